@@ -1,0 +1,73 @@
+//! Phong's highlight in its original, unnormalised form.
+//!
+//! | parameter | meaning | range |
+//! |---|---|---|
+//! | `ks` | value of f in the mirror direction, per channel | ks ≥ 0 |
+//! | `exponent` | sharpness | ≥ 1 |
+//!
+//! f = ks · max(0, r·wo)^exponent, with r the mirror direction of `wi`, where `wo` and `wi` are on the same side.
+//! Energy: at most 2π ks / (exponent + 1), so that the highlight of a sharp lobe stays as bright as that of a blunt one and
+//! the reflected share falls. Reciprocal. A look, not a measurement.
+//! Sources: B. Phong, Illumination for Computer Generated Pictures, 1975; K. Suffern, Ray Tracing from the Ground Up,
+//! 2007, chapter 15. Sampling of the lobe: E. Lafortune and Y. Willems, Using the Modified Phong Reflectance Model
+//! for Physically Based Rendering, 1994.
+
+use crate::{Density, Lobe, Real, Sample, Vector};
+
+/// A highlight around the mirror direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GlossySpecular<R: Real> {
+    /// Value of f in the mirror direction, per channel.
+    pub ks: R::Vec3,
+    /// Sharpness, at least one.
+    pub exponent: R,
+}
+
+impl<R: Real> GlossySpecular<R> {
+    /// cos of the angle between `wo` and the mirror direction of `wi`, raised to the exponent; zero on other sides.
+    #[inline]
+    fn lobe(&self, wo: R::Vec3, wi: R::Vec3) -> R {
+        let cos = wo.z() * wi.z() - wo.x() * wi.x() - wo.y() * wi.y();
+        if wo.z() * wi.z() > R::zero() && cos > R::zero() { cos.powf(self.exponent) } else { R::zero() }
+    }
+
+    /// f · |cos θi|, per steradian.
+    #[inline]
+    pub fn eval(&self, wo: R::Vec3, wi: R::Vec3) -> R::Vec3 {
+        self.ks * (self.lobe(wo, wi) * wi.z().abs())
+    }
+
+    /// (exponent + 1)/2π · cos^exponent around the mirror direction of `wo`, per steradian. Integrates to less than one:
+    /// the part of the lobe below the surface gives no sample.
+    #[inline]
+    pub fn pdf(&self, wo: R::Vec3, wi: R::Vec3) -> R {
+        self.lobe(wo, wi) * (self.exponent + R::one()) / (R::from_f64(2.0) * R::pi())
+    }
+
+    /// A direction around the mirror direction of `wo`, from a point of the unit square; `None` where it falls below the
+    /// surface.
+    #[inline]
+    pub fn sample(&self, wo: R::Vec3, [u, v]: [R; 2]) -> Option<Sample<R>> {
+        let cos = (R::one() - u).powf(R::one() / (self.exponent + R::one()));
+        let sin = (R::one() - cos * cos).at_least(R::zero()).sqrt();
+        let (sin_phi, cos_phi) = (R::from_f64(2.0) * R::pi() * v).sin_cos();
+        let (mirror, x, y) = {
+            let m = R::Vec3::new(-wo.x(), -wo.y(), wo.z());
+            // Duff et al., Building an Orthonormal Basis, Revisited, 2017.
+            let sign = if m.z() < R::zero() { -R::one() } else { R::one() };
+            let a = -R::one() / (sign + m.z());
+            let b = m.x() * m.y() * a;
+            let x = R::Vec3::new(R::one() + sign * m.x() * m.x() * a, sign * b, -(sign * m.x()));
+            (m, x, R::Vec3::new(b, sign + m.y() * m.y() * a, -m.y()))
+        };
+        let wi = x * (sin * cos_phi) + y * (sin * sin_phi) + mirror * cos;
+        let pdf = self.pdf(wo, wi);
+        (pdf > R::zero()).then(|| Sample {
+            wi,
+            weight: self.eval(wo, wi) / pdf,
+            pdf: Density::SolidAngle(pdf),
+            lobe: Lobe::GlossyReflection,
+            eta: R::one(),
+        })
+    }
+}

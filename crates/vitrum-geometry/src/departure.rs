@@ -1,0 +1,62 @@
+//! A ray with its history: where it started, and what it has passed.
+
+use vitrum_math::Ray;
+
+/// The surface that a ray starts on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Departure {
+    /// The object.
+    pub object: u32,
+    /// The face of the object.
+    pub face: u32,
+    /// True when the ray goes to the side that the shape's own normal points away from.
+    pub behind: bool,
+    /// For meshes: a bound on the distance between the origin and the true point of the face, in units of the mesh's own
+    /// frame. Zero for other shapes.
+    pub error: f64,
+}
+
+/// A question to the [`Aggregate`](crate::Aggregate).
+#[derive(Clone, Copy, Debug)]
+pub struct Query {
+    /// The ray, with a unit direction.
+    pub ray: Ray,
+    /// The surface that it starts on, if it does.
+    pub departed: Option<Departure>,
+    /// What it has passed without being changed: only hits beyond count.
+    passed: (f64, u32, u32),
+}
+
+impl Query {
+    /// A ray from free space, such as a camera's.
+    #[inline]
+    pub fn new(ray: Ray) -> Self {
+        Self { ray, departed: None, passed: (f64::NEG_INFINITY, 0, 0) }
+    }
+
+    /// A ray that leaves a surface.
+    #[inline]
+    pub fn leaving(ray: Ray, departed: Departure) -> Self {
+        Self { departed: Some(departed), ..Self::new(ray) }
+    }
+
+    /// The same ray beyond a hit that it passed straight through: origin and direction stay, only hits that come after
+    /// (t, object, face) count from now on.
+    #[inline]
+    pub fn pass(&mut self, t: f64, object: u32, face: u32) {
+        self.passed = (t, object, face);
+    }
+
+    /// True for a hit that lies ahead and has not been passed.
+    #[inline]
+    pub(crate) fn admits(&self, t: f64, object: u32, face: u32) -> bool {
+        let (passed, passed_object, passed_face) = self.passed;
+        t >= 0.0 && (t > passed || t == passed && (object, face) > (passed_object, passed_face))
+    }
+
+    /// The departure, when it is from `object`.
+    #[inline]
+    pub(crate) fn departed_from(&self, object: u32) -> Option<&Departure> {
+        self.departed.as_ref().filter(|d| d.object == object)
+    }
+}

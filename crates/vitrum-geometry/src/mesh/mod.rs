@@ -1,0 +1,13 @@
+//! Triangle meshes: what a file holds, what is wrong with it, and the form that rays are traced against.
+
+mod data;
+mod health;
+mod normals;
+mod triangle;
+mod triangle_mesh;
+
+pub use data::{MeshData, Triangle};
+pub use health::{Component, Defect, Finding, Health, Mended, Place, Remedy, health, mend};
+pub use normals::{flat_normals, smooth_normals};
+pub(crate) use triangle_mesh::MeshPoint;
+pub use triangle_mesh::{MeshError, TriangleMesh};

@@ -1,0 +1,258 @@
+//! A triangle mesh in the form that rays are traced against.
+
+use super::triangle::{Settled, Sheared, settle};
+use super::{MeshData, health};
+use crate::aggregate::{Counters, Hit, Nearest};
+use crate::departure::Query;
+use crate::tree::{BoxTree, FrameRay, UnitFrame};
+use std::ops::ControlFlow;
+use vitrum_math::{Bounds, DVec3, Ray, Vec3, gamma};
+
+/// Triangles in a unit frame of their own (single precision), with the tree that finds them.
+#[derive(Clone, Debug)]
+pub struct TriangleMesh {
+    frame: UnitFrame,
+    bounds: Bounds,
+    /// Corner positions in the unit frame.
+    vertices: Vec<Vec3>,
+    triangles: Vec<[u32; 3]>,
+    /// Corner normals for shading, unit length in the mesh's frame; empty for a mesh with flat faces.
+    normals: Vec<Vec3>,
+    normal_triangles: Vec<[u32; 3]>,
+    tree: BoxTree,
+    closed: bool,
+}
+
+/// A mesh that can't be traced.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeshError {
+    /// No triangle with an area.
+    #[error("the mesh has no triangle with an area")]
+    Empty,
+    /// A vertex with a coordinate that is NaN or infinite.
+    #[error("{count} vertices are not finite, the first is number {first}")]
+    NotFinite {
+        /// How many.
+        count: usize,
+        /// Index of the first, from 0.
+        first: usize,
+    },
+    /// A corner that names a vertex or normal that does not exist.
+    #[error("triangle {triangle} names a vertex or normal that does not exist")]
+    Index {
+        /// Index of the first such triangle, from 0.
+        triangle: usize,
+    },
+    /// More triangles than 32-bit indices count.
+    #[error("the mesh has {0} triangles, the limit is {max}", max = u32::MAX)]
+    TooLarge(usize),
+}
+
+/// A point of a mesh in its own frame.
+pub(crate) struct MeshPoint {
+    pub(crate) point: DVec3,
+    /// Geometric normal, unit length.
+    pub(crate) ng: DVec3,
+    /// Shading normal, not unit length; zero where the mesh has flat faces.
+    pub(crate) ns: DVec3,
+    /// Bound on the error of `point` per coordinate, in the units of the mesh.
+    pub(crate) error: f64,
+}
+
+impl TriangleMesh {
+    /// Prepares a mesh for tracing. Its normals, where it has any, are used for shading.
+    ///
+    /// # Errors
+    /// [`MeshError`] for a mesh that is empty, not finite, too large, or has indices out of range.
+    pub fn new(data: &MeshData) -> Result<Self, MeshError> {
+        let count = data.positions.iter().filter(|p| !p.is_finite()).count();
+        if let Some(first) = data.positions.iter().position(|p| !p.is_finite()) {
+            return Err(MeshError::NotFinite { count, first });
+        }
+        if u32::try_from(data.triangles.len()).is_err() {
+            return Err(MeshError::TooLarge(data.triangles.len()));
+        }
+        let in_range = |t: &[u32; 3], len: usize| t.iter().all(|&i| (i as usize) < len);
+        let smooth = data.normal_triangles.len() == data.triangles.len();
+        let bad_position = data.triangles.iter().position(|t| !in_range(t, data.positions.len()));
+        let bad_normal =
+            data.normal_triangles.iter().take_while(|_| smooth).position(|t| !in_range(t, data.normals.len()));
+        if let Some(triangle) = bad_position.or(bad_normal) {
+            return Err(MeshError::Index { triangle });
+        }
+
+        let used = data.triangles.iter().flatten().map(|&i| data.positions[i as usize]);
+        let bounds = Bounds::around(used);
+        let frame = UnitFrame::around(&bounds);
+        let vertices: Vec<Vec3> = data.positions.iter().map(|&p| frame.to_frame(p).as_vec3()).collect();
+        // A triangle without area in the rounded frame can't be hit; its neighbours close the surface.
+        let has_area = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|i| vertices[i as usize].as_dvec3());
+            (b - a).cross(c - a) != DVec3::ZERO
+        };
+        let kept: Vec<usize> = (0..data.triangles.len()).filter(|&i| has_area(&data.triangles[i])).collect();
+        if kept.is_empty() {
+            return Err(MeshError::Empty);
+        }
+        let triangles: Vec<[u32; 3]> = kept.iter().map(|&i| data.triangles[i]).collect();
+        let normal_triangles = if smooth { kept.iter().map(|&i| data.normal_triangles[i]).collect() } else { vec![] };
+        let normals = if smooth { data.normals.iter().map(|n| n.normalize_or_zero().as_vec3()).collect() } else { vec![] };
+        let tree = BoxTree::build(triangles.iter().map(|t| {
+            let [a, b, c] = t.map(|i| vertices[i as usize]);
+            (a.min(b).min(c), a.max(b).max(c))
+        }));
+        let closed = health(data).is_closed();
+        Ok(Self { frame, bounds, vertices, triangles, normals, normal_triangles, tree, closed })
+    }
+
+    /// The box around it, in its own units.
+    pub fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    /// How many triangles can be hit.
+    pub fn triangle_count(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// True when every edge joins exactly two faces with opposite directions: the mesh has an inside.
+    pub fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    /// True when its normals are interpolated.
+    pub fn is_smooth(&self) -> bool {
+        !self.normals.is_empty()
+    }
+
+    /// Bytes on the heap.
+    pub fn memory(&self) -> usize {
+        size_of_val(&*self.vertices)
+            + size_of_val(&*self.triangles)
+            + size_of_val(&*self.normals)
+            + size_of_val(&*self.normal_triangles)
+            + self.tree.memory()
+    }
+
+    #[inline]
+    fn corners(&self, face: u32) -> [Vec3; 3] {
+        self.triangles[face as usize].map(|i| self.vertices[i as usize])
+    }
+
+    /// Offers the first triangle that counts, if it is nearer than what was found before.
+    #[inline]
+    pub(crate) fn closest(&self, ray: &Ray, query: &Query, object: u32, nearest: &mut Nearest, counters: &mut Counters) {
+        let Some(ray) = self.frame.enter(ray, nearest.limit()) else { return };
+        let sheared = Sheared::new(ray.origin, ray.direction);
+        let limit = ray.box_limit(nearest.limit());
+        self.tree.traverse(&ray, limit, |face, limit| {
+            if let Some(hit) = self.candidate(&ray, &sheared, query, object, face, counters)
+                && nearest.offer(hit)
+            {
+                return ControlFlow::Continue(ray.box_limit(nearest.limit()));
+            }
+            ControlFlow::Continue(limit)
+        });
+    }
+
+    /// True when some triangle counts and lies nearer than `limit`.
+    #[inline]
+    pub(crate) fn any(&self, ray: &Ray, query: &Query, object: u32, limit: f64, counters: &mut Counters) -> bool {
+        let Some(ray) = self.frame.enter(ray, limit) else { return false };
+        let sheared = Sheared::new(ray.origin, ray.direction);
+        let mut found = false;
+        self.tree.traverse(&ray, ray.box_limit(limit), |face, box_limit| {
+            match self.candidate(&ray, &sheared, query, object, face, counters) {
+                Some(hit) if hit.t < limit => {
+                    found = true;
+                    ControlFlow::Break(())
+                }
+                _ => ControlFlow::Continue(box_limit),
+            }
+        });
+        found
+    }
+
+    /// The same as [`closest`](Self::closest) by trying every triangle: the oracle that the tree is tested against.
+    #[cfg(test)]
+    pub(crate) fn closest_of_all(&self, ray: &Ray, query: &Query, nearest: &mut Nearest) {
+        let Some(ray) = self.frame.enter(ray, f64::INFINITY) else { return };
+        let sheared = Sheared::new(ray.origin, ray.direction);
+        for face in 0..self.triangles.len() as u32 {
+            if let Some(hit) = self.candidate(&ray, &sheared, query, 0, face, &mut Counters::default()) {
+                nearest.offer(hit);
+            }
+        }
+    }
+
+    /// Tests one triangle, settles it in double precision, and asks whether it counts.
+    #[inline]
+    fn candidate(
+        &self,
+        ray: &FrameRay,
+        sheared: &Sheared,
+        query: &Query,
+        object: u32,
+        face: u32,
+        counters: &mut Counters,
+    ) -> Option<Hit> {
+        let corners = self.corners(face);
+        let found = sheared.test(&corners)?;
+        let departed = query.departed_from(object);
+        if departed.is_some_and(|d| d.face == face) {
+            return None;
+        }
+        let corners = corners.map(|c| c.as_dvec3());
+        let Settled { t: frame_t, barycentrics, clamped } = settle(&ray.exact, &corners, found);
+        let t = frame_t / ray.t_scale;
+        // A neighbour within the rounding error of the origin: behind it by that error still counts as at the origin, unless
+        // its sense contradicts the departure.
+        let t = if let Some(departed) = departed {
+            let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+            let along = ray.exact.direction.dot(normal);
+            let distance = (frame_t * along).abs() / normal.dot(normal).sqrt();
+            if distance <= departed.error {
+                let entering = along < 0.0;
+                if entering == departed.behind {
+                    counters.contradictions += u64::from(t >= 0.0);
+                    return None;
+                }
+                t.max(0.0)
+            } else {
+                t
+            }
+        } else {
+            t
+        };
+        if !query.admits(t, object, face) {
+            return None;
+        }
+        counters.clamped += u64::from(clamped);
+        Some(Hit { t, object, face, barycentrics: [barycentrics[1], barycentrics[2]] })
+    }
+
+    /// The point of `face` with the given weights of its second and third corner.
+    pub(crate) fn point(&self, face: u32, [b1, b2]: [f64; 2]) -> MeshPoint {
+        let [v0, v1, v2] = self.corners(face).map(|c| c.as_dvec3());
+        let weights = [1.0 - b1 - b2, b1, b2];
+        let p = v0 * weights[0] + v1 * weights[1] + v2 * weights[2];
+        let normal = (v1 - v0).cross(v2 - v0);
+        let ns = if self.is_smooth() {
+            let [n0, n1, n2] = self.normal_triangles[face as usize].map(|i| self.normals[i as usize].as_dvec3());
+            n0 * weights[0] + n1 * weights[1] + n2 * weights[2]
+        } else {
+            DVec3::ZERO
+        };
+        let point = self.frame.from_frame(p);
+        // Interpolation rounds five times on coordinates of at most one half; then the frame's centre is added.
+        let error = gamma(6) / self.frame.scale() + gamma(1) * point.abs().max_element();
+        MeshPoint { point, ng: normal / normal.dot(normal).sqrt(), ns, error }
+    }
+
+    /// An error of a point, given in the units of the mesh, in units of its unit frame: what a ray that starts there
+    /// carries with it. The conversion back adds its own rounding.
+    pub(crate) fn frame_error(&self, point: DVec3, error: f64) -> f64 {
+        (error + gamma(2) * point.abs().max_element()) * self.frame.scale()
+    }
+}

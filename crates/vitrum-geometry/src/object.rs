@@ -1,0 +1,153 @@
+//! A shape in its place.
+
+use crate::aggregate::{Counters, Hit, Nearest};
+use crate::departure::Query;
+use crate::interaction::SurfaceInteraction;
+use crate::mesh::{MeshPoint, TriangleMesh};
+use crate::shape::{Crossings, Leaving, Plane, Rectangle, Shape, ShapeError, Sphere, SurfacePoint};
+use vitrum_math::{Bounds, Ray, Transform, unit};
+
+/// A shape with its transform and orientation.
+#[derive(Clone, Debug)]
+pub struct Object {
+    shape: Shape,
+    /// `None` where the shape itself stands in world space.
+    transform: Option<Transform>,
+    flipped: bool,
+}
+
+impl Object {
+    /// A shape placed by `transform`; `flip` turns its outside inward, for surfaces that are parts of compound objects.
+    /// Shapes that can take up the transform do, so that rays need none.
+    ///
+    /// # Errors
+    /// [`ShapeError`] when the transformed shape is degenerate in double precision.
+    pub fn new(shape: Shape, transform: &Transform, flip: bool) -> Result<Self, ShapeError> {
+        let t = transform;
+        let (shape, transform) = match &shape {
+            _ if *t == Transform::IDENTITY => (shape, None),
+            Shape::Sphere(s) if t.similarity().is_some() => {
+                let scale = t.similarity().expect("just seen");
+                (Shape::Sphere(Sphere::new(t.world_point(s.centre()), s.radius() * scale)?), None)
+            }
+            Shape::Plane(p) => {
+                (Shape::Plane(Plane::new(t.world_point(p.point()), t.world_normal(p.normal()))?), None)
+            }
+            Shape::Rectangle(r) => {
+                let (corner, [u, v]) = r.corner_and_edges();
+                let (u_world, v_world) = (t.world_vector(u), t.world_vector(v));
+                // Mirroring turns the product of the edges; exchanging them keeps the outside outside.
+                let mirrored = u_world.cross(v_world).dot(t.world_normal(u.cross(v))) < 0.0;
+                let (a, b) = if mirrored { (v_world, u_world) } else { (u_world, v_world) };
+                (Shape::Rectangle(Rectangle::new(t.world_point(corner), a, b)?), None)
+            }
+            _ => (shape, Some(*t)),
+        };
+        Ok(Self { shape, transform, flipped: flip })
+    }
+
+    /// The shape.
+    pub fn shape(&self) -> &Shape {
+        &self.shape
+    }
+
+    /// The box around it in the world; `None` when it is infinite.
+    pub fn bounds(&self) -> Option<Bounds> {
+        let own = self.shape.bounds()?;
+        Some(self.transform.as_ref().map_or(own, |t| t.world_bounds(&own)))
+    }
+
+    #[inline]
+    fn local_ray(&self, ray: &Ray) -> Ray {
+        match &self.transform {
+            None => *ray,
+            Some(t) => Ray::new(t.object_point(ray.origin), t.object_vector(ray.direction)),
+        }
+    }
+
+    #[inline]
+    fn crossings(&self, ray: &Ray, leaving: Option<Leaving>) -> Crossings {
+        match &self.shape {
+            Shape::Sphere(s) => s.crossings(ray, leaving),
+            Shape::Plane(s) => s.crossings(ray, leaving),
+            Shape::Disk(s) => s.crossings(ray, leaving),
+            Shape::Rectangle(s) => s.crossings(ray, leaving),
+            Shape::Cuboid(s) => s.crossings(ray, leaving),
+            Shape::Cylinder(s) => s.crossings(ray, leaving),
+            Shape::Mesh(_) => unreachable!("meshes search their own tree"),
+        }
+    }
+
+    /// The first crossing of an analytic shape that counts.
+    #[inline]
+    fn first(&self, query: &Query, id: u32) -> Option<Hit> {
+        let leaving = query.departed_from(id).map(|d| Leaving { face: d.face, behind: d.behind });
+        let Crossings(crossings) = self.crossings(&self.local_ray(&query.ray), leaving);
+        let first = crossings.iter().find(|c| c.t < f64::INFINITY && query.admits(c.t, id, c.face))?;
+        Some(Hit { t: first.t, object: id, face: first.face, barycentrics: [0.0; 2] })
+    }
+
+    /// Offers the first hit that counts.
+    #[inline]
+    pub(crate) fn closest(&self, query: &Query, id: u32, nearest: &mut Nearest, counters: &mut Counters) {
+        if let Shape::Mesh(mesh) = &self.shape {
+            mesh.closest(&self.local_ray(&query.ray), query, id, nearest, counters);
+        } else if let Some(hit) = self.first(query, id) {
+            nearest.offer(hit);
+        }
+    }
+
+    /// True when something of it is hit nearer than `limit`.
+    #[inline]
+    pub(crate) fn any(&self, query: &Query, id: u32, limit: f64, counters: &mut Counters) -> bool {
+        if let Shape::Mesh(mesh) = &self.shape {
+            mesh.any(&self.local_ray(&query.ray), query, id, limit, counters)
+        } else {
+            self.first(query, id).is_some_and(|hit| hit.t < limit)
+        }
+    }
+
+    /// The point of a hit.
+    #[inline]
+    pub(crate) fn interaction(&self, query: &Query, hit: &Hit) -> SurfaceInteraction {
+        let ray = self.local_ray(&query.ray);
+        let mut shading = None;
+        let mut error = 0.0;
+        let SurfacePoint { mut point, normal: mut ng } = match &self.shape {
+            Shape::Sphere(s) => s.surface_point(&ray, hit.t),
+            Shape::Plane(s) => s.surface_point(&ray, hit.t),
+            Shape::Disk(s) => s.surface_point(&ray, hit.t),
+            Shape::Rectangle(s) => s.surface_point(&ray, hit.t),
+            Shape::Cuboid(s) => s.surface_point(&ray, hit.t, hit.face),
+            Shape::Cylinder(s) => s.surface_point(&ray, hit.t, hit.face),
+            Shape::Mesh(mesh) => {
+                let p = mesh.point(hit.face, hit.barycentrics);
+                error = self.origin_error(mesh, &p);
+                shading = mesh.is_smooth().then_some(p.ns);
+                SurfacePoint { point: p.point, normal: p.ng }
+            }
+        };
+        if let Some(t) = &self.transform {
+            point = t.world_point(point);
+            ng = unit(t.world_normal(ng));
+            shading = shading.map(|n| t.world_normal(n));
+        }
+        // An interpolated normal that vanishes or points through the surface says nothing.
+        let ns = shading.filter(|n| n.dot(ng) > 0.0).map_or(ng, unit);
+        let (ng, ns) = if self.flipped { (-ng, -ns) } else { (ng, ns) };
+        let wo = -query.ray.direction;
+        let front = wo.dot(ng) > 0.0;
+        let flipped = self.flipped;
+        SurfaceInteraction { point, wo, ng, ns, front, object: hit.object, face: hit.face, flipped, error }
+    }
+
+    /// Bound on the error, in units of the mesh's unit frame, of the origin of a ray that starts at a point of the mesh:
+    /// the point goes to world space and back.
+    fn origin_error(&self, mesh: &TriangleMesh, p: &MeshPoint) -> f64 {
+        let own = match &self.transform {
+            None => p.error,
+            Some(t) => t.object_error(t.world_point(p.point), t.world_error(p.point, p.error)),
+        };
+        mesh.frame_error(p.point, own)
+    }
+}

@@ -1,0 +1,120 @@
+//! Media, textures and materials.
+
+use vitrum_math::{DVec3, Rgb};
+
+use super::Name;
+use crate::diagnostic::Span;
+
+/// A medium that objects can lie in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Medium {
+    /// Its name.
+    pub name: Name,
+    /// Absolute index of refraction, 0.1 to 10.
+    pub ior: f64,
+}
+
+/// A colour that varies in space.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Texture {
+    /// The table's header.
+    pub span: Span,
+    /// Its name.
+    pub name: Name,
+    /// How it varies.
+    pub pattern: Pattern,
+}
+
+/// How a texture varies.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Pattern {
+    /// Cells of two colours in turn.
+    Checker {
+        /// Colour of the cell from `origin` to `origin + size`.
+        even: Rgb,
+        /// Colour of its neighbours.
+        odd: Rgb,
+        /// Edge of a cell, metres.
+        size: f64,
+        /// A corner of a cell, metres.
+        origin: DVec3,
+        /// Along which of x, y and z cells alternate; at least one.
+        axes: [bool; 3],
+    },
+}
+
+/// A colour, or the name of a texture.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ColourOrTexture {
+    /// The same everywhere.
+    Colour(Rgb),
+    /// By this texture.
+    Texture(Name),
+}
+
+/// A material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// The table's header, or the whole of a material written at its object.
+    pub span: Span,
+    /// Its name; none for a material written at its object.
+    pub name: Option<Name>,
+    /// How it scatters.
+    pub model: Model,
+}
+
+/// How a material scatters.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Model {
+    /// Evenly to all sides.
+    Matte {
+        /// 0 to 1.
+        color: ColourOrTexture,
+        /// Share of ambient light, 0 to 1.
+        ka: f64,
+        /// Diffuse share, 0 to 1.
+        kd: f64,
+    },
+    /// With a highlight.
+    Phong(Phong),
+    /// Phong and a mirror.
+    Reflective {
+        /// What it is beside the mirror.
+        phong: Phong,
+        /// Share mirrored, 0 to 1.
+        kr: Rgb,
+    },
+    /// Clear with constant shares.
+    Transparent {
+        /// What it is beside clear.
+        phong: Phong,
+        /// Share mirrored, 0 to 1.
+        kr: Rgb,
+        /// Share let through, 0 to 1.
+        kt: Rgb,
+        /// Index of refraction, inside over outside, 0.001 to 1000.
+        ior: f64,
+        /// What `ior` is relative to; none is the scene's medium.
+        outside: Option<Name>,
+    },
+    /// Shining.
+    Emissive {
+        /// W/(m² sr)
+        radiance: ColourOrTexture,
+    },
+}
+
+/// Ambient, diffuse and glossy part.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Phong {
+    /// Of the ambient and diffuse part, 0 to 1.
+    pub color: ColourOrTexture,
+    /// Share of ambient light, 0 to 1.
+    pub ka: f64,
+    /// Diffuse share, 0 to 1.
+    pub kd: f64,
+    /// Strength of the highlight, 0 to 1.
+    pub ks: f64,
+    /// Sharpness of the highlight, 1 to 1e6.
+    pub exponent: f64,
+}

@@ -1,0 +1,162 @@
+//! Media, textures and materials.
+
+use std::collections::BTreeMap;
+
+use toml::de::DeTable;
+use vitrum_math::Rgb;
+
+use super::super::schema::{self, Realm, Table};
+use super::super::{
+    ColourOrTexture, Material, MaterialChoice, Medium, Model, Object, Pattern, Phong, Texture,
+};
+use super::context::shorten;
+use super::{Context, Fields, Problem, Span};
+
+/// By how much `kr + kt` may exceed 1 without a warning: what is left of decimal fractions in f64.
+const SUM_TOLERANCE: f64 = 1e-12;
+
+pub(super) fn medium(cx: &mut Context<'_>, table: &DeTable<'_>, span: Span) -> Option<Medium> {
+    let mut fields = Fields::open(cx, &schema::MEDIUM, table, span);
+    let name = fields.name(Realm::Medium);
+    let ior = fields.number("ior");
+    fields.close();
+    Some(Medium { name: name?, ior: ior? })
+}
+
+pub(super) fn texture(cx: &mut Context<'_>, table: &DeTable<'_>, span: Span) -> Option<Texture> {
+    let mut fields = Fields::open(cx, &schema::TEXTURE, table, span);
+    let name = fields.name(Realm::Texture);
+    let pattern = match fields.variant() {
+        Some("checker") => checker(&mut fields),
+        Some(other) => panic!("no reader for a {other} texture"),
+        None => None,
+    };
+    fields.close();
+    Some(Texture { span, name: name?, pattern: pattern? })
+}
+
+fn checker(fields: &mut Fields<'_, '_>) -> Option<Pattern> {
+    const AXES: [(&str, [bool; 3]); 7] = [
+        ("x", [true, false, false]),
+        ("y", [false, true, false]),
+        ("z", [false, false, true]),
+        ("xy", [true, true, false]),
+        ("xz", [true, false, true]),
+        ("yz", [false, true, true]),
+        ("xyz", [true, true, true]),
+    ];
+    let even = fields.colour("even");
+    let odd = fields.colour("odd");
+    let size = fields.number("size");
+    let origin = fields.point("origin");
+    let axes = fields.choice("axes", &AXES);
+    Some(Pattern::Checker { even: even?, odd: odd?, size: size?, origin: origin?, axes: axes? })
+}
+
+/// A material of either schema: with a name, or at its object without one.
+pub(super) fn material(
+    cx: &mut Context<'_>,
+    schema: &'static Table,
+    table: &DeTable<'_>,
+    span: Span,
+) -> Option<Material> {
+    let named = schema.keys.iter().any(|key| key.name == "name");
+    let mut fields = Fields::open(cx, schema, table, span);
+    let name = if named { fields.name(Realm::Material) } else { None };
+    let model = match fields.variant() {
+        Some("matte") => matte(&mut fields),
+        Some("phong") => phong(&mut fields).map(Model::Phong),
+        Some("reflective") => {
+            let (phong, kr) = (phong(&mut fields), fields.colour("kr"));
+            phong.zip(kr).map(|(phong, kr)| Model::Reflective { phong, kr })
+        }
+        Some("transparent") => transparent(&mut fields),
+        Some("emissive") => fields.colour_or_texture("radiance").map(|radiance| Model::Emissive { radiance }),
+        Some(other) => panic!("no reader for a {other} material"),
+        None => None,
+    };
+    fields.close();
+    if named && name.is_none() {
+        return None;
+    }
+    Some(Material { span, name, model: model? })
+}
+
+fn matte(fields: &mut Fields<'_, '_>) -> Option<Model> {
+    let (color, ka, kd) = (fields.colour_or_texture("color"), fields.number("ka"), fields.number("kd"));
+    Some(Model::Matte { color: color?, ka: ka?, kd: kd? })
+}
+
+fn phong(fields: &mut Fields<'_, '_>) -> Option<Phong> {
+    let color = fields.colour_or_texture("color");
+    let (ka, kd, ks) = (fields.number("ka"), fields.number("kd"), fields.number("ks"));
+    let exponent = fields.number("exponent");
+    Some(Phong { color: color?, ka: ka?, kd: kd?, ks: ks?, exponent: exponent? })
+}
+
+fn transparent(fields: &mut Fields<'_, '_>) -> Option<Model> {
+    let phong = phong(fields);
+    let (kr, kt) = (fields.colour("kr"), fields.colour("kt"));
+    let ior = fields.number("ior");
+    let outside = fields.reference("outside");
+    if let (Some(kr), Some(kt)) = (kr, kt) {
+        warn_of_gain(fields, kr, kt);
+    }
+    Some(Model::Transparent { phong: phong?, kr: kr?, kt: kt?, ior: ior?, outside })
+}
+
+/// Warns of a surface that gives back more light than it gets.
+fn warn_of_gain(fields: &mut Fields<'_, '_>, kr: Rgb, kt: Rgb) {
+    let most = (kr + kt).max_element();
+    if most <= 1.0 + SUM_TOLERANCE {
+        return;
+    }
+    // The key that is written out is the one to change.
+    let key = if fields.has("kt") { "kt" } else { "kr" };
+    let left_out = match (fields.has("kr"), fields.has("kt")) {
+        (true, true) => "",
+        (true, false) => " (`kt` is 0.9 unless it is given)",
+        _ => " (`kr` is 0.1 unless it is given)",
+    };
+    let message = "this surface gives back more light than it gets";
+    let label = format!("`kr` + `kt` = {most}, expected at most 1{left_out}");
+    let problem = Problem::warning(fields.span_of(key), message, label);
+    fields.cx.report(problem.help("lower `kr` or `kt` until they add up to 1 or less in every channel"));
+}
+
+/// Tells textures brighter than 1 where a surface colour is wanted.
+pub(super) fn check_reflectances(
+    cx: &mut Context<'_>,
+    textures: &[Texture],
+    materials: &[Material],
+    objects: &[Object],
+) {
+    let bright: BTreeMap<&str, &Texture> = textures
+        .iter()
+        .filter(|texture| match texture.pattern {
+            Pattern::Checker { even, odd, .. } => even.max(odd).max_element() > 1.0,
+        })
+        .map(|texture| (texture.name.text.as_str(), texture))
+        .collect();
+    let inline = objects.iter().filter_map(|object| match &object.material {
+        Some(MaterialChoice::Inline(material)) => Some(material.as_ref()),
+        _ => None,
+    });
+    for material in materials.iter().chain(inline) {
+        let color = match &material.model {
+            Model::Matte { color, .. } => color,
+            Model::Phong(phong) | Model::Reflective { phong, .. } | Model::Transparent { phong, .. } => {
+                &phong.color
+            }
+            Model::Emissive { .. } => continue,
+        };
+        let ColourOrTexture::Texture(name) = color else { continue };
+        if let Some(texture) = bright.get(name.text.as_str()) {
+            let message = format!("the texture \"{}\" is too bright for a surface", shorten(&name.text));
+            let problem = Problem::error(name.span, message, "expected colours from 0 to 1")
+                .also(texture.span, "it has a colour above 1")
+                .help("only `radiance` of an emissive material can exceed 1");
+            cx.report(problem);
+        }
+    }
+}

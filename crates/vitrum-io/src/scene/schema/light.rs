@@ -1,0 +1,55 @@
+//! Lights.
+
+use super::{Choice, Key, Kind, Table, Variant};
+
+const SHADOWS: Key = Key::new("shadows", Kind::Boolean, "whether objects stand in its way").default("true");
+
+/// `[[light]]`
+pub const LIGHT: Table = Table {
+    id: "light",
+    header: "[[light]]",
+    noun: "a light",
+    keys: &[Key::new("name", Kind::Name, "its name in messages").or("none")],
+    choice: Some(Choice {
+        key: "type",
+        variants: &[
+            Variant {
+                name: "ambient",
+                meaning: "The same light on every surface, from everywhere, without shadows.",
+                keys: &[Key::light("radiance", "its radiance; a material takes `ka` of it").unit("W/(m² sr)")],
+            },
+            Variant {
+                name: "point",
+                meaning: "Light from one point into all directions.",
+                keys: &[
+                    Key::point("position", "where it is"),
+                    Key::light(
+                        "intensity",
+                        "its radiant intensity; without falloff, the irradiance that it gives",
+                    )
+                    .unit("W/sr"),
+                    Key::new(
+                        "falloff",
+                        Kind::Choice(&["inverse-square", "none"]),
+                        "whether it weakens with the distance, as light does, or not",
+                    )
+                    .default("\"inverse-square\""),
+                    SHADOWS,
+                ],
+            },
+            Variant {
+                name: "directional",
+                meaning: "Parallel light from far away.",
+                keys: &[
+                    Key::vector("direction", "where its light travels to"),
+                    Key::light("irradiance", "its irradiance on a surface square to it").unit("W/m²"),
+                    SHADOWS,
+                ],
+            },
+        ],
+    }),
+    hints: &[
+        ("color", "the colour is part of `radiance`, `intensity` or `irradiance`, as [red, green, blue]"),
+        ("power", "a light is given by `radiance`, `intensity` or `irradiance`, whichever its type has"),
+    ],
+};

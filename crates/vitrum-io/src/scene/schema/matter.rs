@@ -1,0 +1,157 @@
+//! Media, textures and materials.
+
+use super::{Choice, Key, Kind, Range, Realm, Table, Variant};
+
+/// `[[medium]]`
+pub const MEDIUM: Table = Table {
+    id: "medium",
+    header: "[[medium]]",
+    noun: "a medium",
+    keys: &[
+        Key::new(
+            "name",
+            Kind::Name,
+            "what refers to it; `air` and `vacuum`, both of ior 1, are there already",
+        ),
+        Key::new("ior", Kind::Number, "its index of refraction against vacuum")
+            .range(Range::Closed(0.1, 10.0)),
+    ],
+    choice: None,
+    hints: &[],
+};
+
+/// `[[texture]]`
+pub const TEXTURE: Table = Table {
+    id: "texture",
+    header: "[[texture]]",
+    noun: "a texture",
+    keys: &[Key::new("name", Kind::Name, "what a material's `color` or `radiance` refers to")],
+    choice: Some(Choice {
+        key: "type",
+        variants: &[Variant {
+            name: "checker",
+            meaning: "Cells of two colours in turn, fixed in the scene.",
+            keys: &[
+                Key::light("even", "colour of the cell that starts at the origin"),
+                Key::light("odd", "colour of its neighbours"),
+                Key::length("size", "edge of a cell"),
+                Key::point("origin", "a corner of a cell").default("[0, 0, 0]"),
+                Key::new(
+                    "axes",
+                    Kind::Choice(&["x", "y", "z", "xy", "xz", "yz", "xyz"]),
+                    "along which axes cells alternate; leave out the one square to a flat floor",
+                )
+                .default("\"xz\""),
+            ],
+        }],
+    }),
+    hints: &[],
+};
+
+/// A surface colour.
+const COLOR: Key = Key::new("color", Kind::ColourOrTexture, "colour of the ambient and diffuse parts")
+    .range(Range::Closed(0.0, 1.0));
+
+const KA: Key = Key::share("ka", "share of ambient light given back");
+const KD: Key = Key::share("kd", "share of light given back evenly to all sides");
+const KS: Key = Key::share("ks", "strength of the highlight");
+const EXPONENT: Key =
+    Key::new("exponent", Kind::Number, "sharpness of the highlight").range(Range::Closed(1.0, 1e6));
+
+const fn coefficient(name: &'static str, meaning: &'static str) -> Key {
+    Key::new(name, Kind::Colour, meaning).range(Range::Closed(0.0, 1.0))
+}
+
+const MODELS: Choice = Choice {
+    key: "type",
+    variants: &[
+        Variant {
+            name: "matte",
+            meaning: "Paper, plaster: light leaves evenly to all sides.",
+            keys: &[COLOR.default("1"), KA.default("1"), KD.default("1")],
+        },
+        Variant {
+            name: "phong",
+            meaning: "Matte with a highlight of each light.",
+            keys: &[
+                COLOR.default("1"),
+                KA.default("1"),
+                KD.default("1"),
+                KS.default("0.2"),
+                EXPONENT.default("100"),
+            ],
+        },
+        Variant {
+            name: "reflective",
+            meaning: "Phong that also mirrors its surroundings.",
+            keys: &[
+                COLOR.default("1"),
+                KA.default("1"),
+                KD.default("1"),
+                KS.default("0.2"),
+                EXPONENT.default("100"),
+                coefficient("kr", "share of light mirrored"),
+            ],
+        },
+        Variant {
+            name: "transparent",
+            meaning: "Clear with fixed shares mirrored and let through; in total reflection all is mirrored.",
+            keys: &[
+                COLOR.default("1"),
+                KA.default("0"),
+                KD.default("0"),
+                KS.default("0"),
+                EXPONENT.default("2000"),
+                coefficient("kr", "share of light mirrored").default("0.1"),
+                coefficient("kt", "share of light let through; `kr` and `kt` should not exceed 1 together")
+                    .default("0.9"),
+                Key::new(
+                    "ior",
+                    Kind::Number,
+                    "index of refraction, inside over outside: 0.75 is air in water",
+                )
+                .range(Range::Closed(0.001, 1000.0)),
+                Key::new("outside", Kind::Reference(Realm::Medium), "the medium that `ior` is relative to")
+                    .or("`medium` of `[surroundings]`"),
+            ],
+        },
+        Variant {
+            name: "emissive",
+            meaning: "Shines by itself; does not light other objects.",
+            keys: &[Key::new("radiance", Kind::ColourOrTexture, "its radiance")
+                .unit("W/(m² sr)")
+                .range(Range::AtLeast(0.0))],
+        },
+    ],
+};
+
+const MATERIAL_HINTS: &[(&str, &str)] = &[
+    ("index", "the index of refraction is `ior`"),
+    ("shininess", "the sharpness of the highlight is `exponent`"),
+    ("diffuse", "the colour is `color`, the diffuse share `kd`"),
+];
+
+/// `[[material]]`
+pub const MATERIAL: Table = Table {
+    id: "material",
+    header: "[[material]]",
+    noun: "a material",
+    keys: &[Key::new("name", Kind::Name, "what an object's `material` refers to")],
+    choice: Some(MODELS),
+    hints: MATERIAL_HINTS,
+};
+
+/// A material written at its object, without a name.
+pub const INLINE_MATERIAL: Table = Table {
+    id: "inline-material",
+    header: "{ type = ... }",
+    noun: "a material",
+    keys: &[],
+    choice: Some(MODELS),
+    hints: &[
+        ("name", "a material written at its object has no name; one with a name is a [[material]]"),
+        MATERIAL_HINTS[0],
+        MATERIAL_HINTS[1],
+        MATERIAL_HINTS[2],
+    ],
+};

@@ -1,0 +1,15 @@
+//! Materials: parameters and textures that give a scattering model at a point.
+//!
+//! Knows shapes only as points with normals, and neither lights nor files. A [`Material`] is what a scene names; at a point it
+//! becomes [`Scattering`]: what the surface emits, what it makes of ambient light, and the models of `vitrum-bxdf` that
+//! answer for everything else.
+
+mod index;
+mod material;
+mod scattering;
+mod texture;
+
+pub use index::{IndexOfRefraction, InvalidIndex};
+pub use material::{Material, Phong, Transparent};
+pub use scattering::Scattering;
+pub use texture::{Axes, Checker, Texture};

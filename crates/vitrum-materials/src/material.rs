@@ -1,0 +1,177 @@
+//! The closed family of materials.
+
+use crate::Texture;
+use crate::scattering::{Scattering, unless_zero};
+use vitrum_bxdf::{Bxdf, GlossySpecular, Interface, Lambertian, PerfectSpecular, PerfectTransmitter};
+use vitrum_math::{DVec3, Rgb};
+
+/// What a surface is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Material {
+    /// Diffuse reflection: a Phong material without highlight.
+    Matte(Phong),
+    /// Ambient, diffuse and highlight.
+    Phong(Phong),
+    /// Phong, and a mirror that reflects `kr`.
+    Reflective {
+        /// The Phong part.
+        phong: Phong,
+        /// Reflected share, per channel, 0 to 1.
+        kr: Rgb,
+    },
+    /// Phong, and glass with constant coefficients.
+    Transparent(Transparent),
+    /// Sends out light on its front side; invisible to shadow rays' bookkeeping, since it is no light that is sampled.
+    Emissive {
+        /// Radiance.
+        radiance: Texture,
+    },
+}
+
+/// The parameters of B. Phong's illumination model, as textbooks have it.
+///
+/// | parameter | meaning | range |
+/// |---|---|---|
+/// | `colour` | of the ambient and diffuse parts | 0 to 1 per channel |
+/// | `ka`, `kd` | ambient and diffuse coefficients; diffuse reflectance is kd · colour | 0 to 1 |
+/// | `ks`, `exponent` | highlight: f = ks cos^exponent around the mirror direction | ≥ 0, ≥ 1 |
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Phong {
+    /// Colour of the ambient and diffuse parts.
+    pub colour: Texture,
+    /// Ambient coefficient.
+    pub ka: f64,
+    /// Diffuse coefficient.
+    pub kd: f64,
+    /// Highlight coefficient.
+    pub ks: f64,
+    /// Highlight exponent.
+    pub exponent: f64,
+}
+
+/// Glass with constant coefficients, under a Phong part that shows that it is there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transparent {
+    /// The Phong part.
+    pub phong: Phong,
+    /// Reflected share, per channel, 0 to 1.
+    pub kr: Rgb,
+    /// Transmitted share, per channel, 0 to 1.
+    pub kt: Rgb,
+    /// The medium outside (above) and inside (below).
+    pub interface: Interface<f64>,
+}
+
+impl Phong {
+    /// No ambient, no diffuse, no highlight.
+    pub const NONE: Self =
+        Self { colour: Texture::Constant(Rgb::ONE), ka: 0.0, kd: 0.0, ks: 0.0, exponent: 1.0 };
+
+    #[inline]
+    fn scattering(&self, point: DVec3) -> Scattering {
+        let colour = if self.ka == 0.0 && self.kd == 0.0 { Rgb::ZERO } else { self.colour.at(point) };
+        let reflectance = colour * self.kd;
+        let ks = Rgb::splat(self.ks);
+        Scattering {
+            ambient: colour * self.ka,
+            diffuse: unless_zero(reflectance, Lambertian { reflectance }),
+            glossy: unless_zero(ks, GlossySpecular { ks, exponent: self.exponent }),
+            ..Scattering::BLACK
+        }
+    }
+
+    fn is_nothing(&self) -> bool {
+        self.ka == 0.0 && self.kd == 0.0 && self.ks == 0.0
+    }
+}
+
+impl Material {
+    /// The models at a point of the world.
+    #[inline]
+    pub fn scattering(&self, point: DVec3) -> Scattering {
+        match self {
+            Self::Matte(phong) | Self::Phong(phong) => phong.scattering(point),
+            Self::Reflective { phong, kr } => Scattering {
+                specular: unless_zero(*kr, Bxdf::PerfectSpecular(PerfectSpecular { kr: *kr })),
+                ..phong.scattering(point)
+            },
+            Self::Transparent(t) => {
+                let glass = PerfectTransmitter { kr: t.kr, kt: t.kt, interface: t.interface };
+                Scattering { specular: Some(Bxdf::PerfectTransmitter(glass)), ..t.phong.scattering(point) }
+            }
+            Self::Emissive { radiance } => Scattering { emitted: radiance.at(point), ..Scattering::BLACK },
+        }
+    }
+
+    /// True when crossing the surface changes nothing at all: the same index on both sides, nothing reflected, everything
+    /// transmitted, no Phong part. Objects made of it are left out of the scene, so they are invisible to the last bit.
+    pub fn is_invisible(&self) -> bool {
+        match self {
+            Self::Transparent(t) => {
+                t.phong.is_nothing() && t.kr == Rgb::ZERO && t.kt == Rgb::ONE && t.interface.is_matched()
+            }
+            _ => false,
+        }
+    }
+
+    /// The share that a straight shadow ray keeps when it crosses the surface; zero for what is opaque.
+    pub fn straight_transmittance(&self) -> Rgb {
+        match self {
+            Self::Transparent(t) => t.kt,
+            _ => Rgb::ZERO,
+        }
+    }
+
+    /// True for glass: rays are refracted, and the object needs an inside.
+    pub fn is_dielectric(&self) -> bool {
+        matches!(self, Self::Transparent(_))
+    }
+
+    /// The Phong part, where there is one.
+    pub fn phong(&self) -> Option<&Phong> {
+        match self {
+            Self::Matte(phong) | Self::Phong(phong) | Self::Reflective { phong, .. } => Some(phong),
+            Self::Transparent(t) => Some(&t.phong),
+            Self::Emissive { .. } => None,
+        }
+    }
+
+    /// Its name in scene files.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Matte(_) => "matte",
+            Self::Phong(_) => "phong",
+            Self::Reflective { .. } => "reflective",
+            Self::Transparent(_) => "transparent",
+            Self::Emissive { .. } => "emissive",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn clear(ior: f64) -> Transparent {
+        let interface = Interface::new(1.0, ior).expect("valid");
+        Transparent { phong: Phong::NONE, kr: Rgb::ZERO, kt: Rgb::ONE, interface }
+    }
+
+    #[test]
+    fn only_what_changes_nothing_is_invisible() {
+        assert!(Material::Transparent(clear(1.0)).is_invisible());
+        assert!(!Material::Transparent(clear(1.5)).is_invisible());
+        assert!(!Material::Transparent(Transparent { kt: Rgb::splat(0.9), ..clear(1.0) }).is_invisible());
+        let highlight = Phong { ks: 0.2, ..Phong::NONE };
+        assert!(!Material::Transparent(Transparent { phong: highlight, ..clear(1.0) }).is_invisible());
+    }
+
+    #[test]
+    fn zero_coefficients_leave_no_parts() {
+        let scattering = Material::Matte(Phong { ka: 1.0, ..Phong::NONE }).scattering(DVec3::ZERO);
+        assert!(!scattering.answers_lights() && scattering.specular.is_none());
+        assert_eq!(scattering.ambient, Rgb::ONE);
+        let scattering = Material::Reflective { phong: Phong::NONE, kr: Rgb::ZERO }.scattering(DVec3::ZERO);
+        assert_eq!(scattering, Scattering::BLACK);
+    }
+}

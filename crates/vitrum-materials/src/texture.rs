@@ -1,0 +1,83 @@
+//! Colours that vary in space.
+
+use vitrum_math::{DVec3, Rgb};
+
+/// A colour at each point of the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Texture {
+    /// The same everywhere.
+    Constant(Rgb),
+    /// Two colours in turn.
+    Checker(Checker),
+}
+
+/// A checkerboard, or a lattice of cubes, in world space.
+///
+/// | parameter | meaning | range |
+/// |---|---|---|
+/// | `even`, `odd` | the two colours; `even` has its corner at the origin, towards positive coordinates | |
+/// | `size` | edge of a cell, metres | > 0 |
+/// | `origin` | a corner of the pattern, metres | finite |
+/// | `axes` | the coordinates that count: two for a floor, three for a solid | at least one |
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Checker {
+    /// Colour of the cells whose coordinates sum to an even number.
+    pub even: Rgb,
+    /// Colour of the others.
+    pub odd: Rgb,
+    /// Edge of a cell, metres.
+    pub size: f64,
+    /// A corner of the pattern, metres.
+    pub origin: DVec3,
+    /// The coordinates that count.
+    pub axes: Axes,
+}
+
+/// A subset of the three coordinates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Axes {
+    /// The first counts.
+    pub x: bool,
+    /// The second counts.
+    pub y: bool,
+    /// The third counts.
+    pub z: bool,
+}
+
+impl Texture {
+    /// The colour at a point of the world.
+    #[inline]
+    pub fn at(&self, point: DVec3) -> Rgb {
+        match self {
+            Self::Constant(colour) => *colour,
+            Self::Checker(checker) => checker.at(point),
+        }
+    }
+}
+
+impl Checker {
+    #[inline]
+    fn at(&self, point: DVec3) -> Rgb {
+        let cell = (point - self.origin) / self.size;
+        let odd = |counts: bool, x: f64| counts && x.floor().rem_euclid(2.0) == 1.0;
+        let is_odd = odd(self.axes.x, cell.x) ^ odd(self.axes.y, cell.y) ^ odd(self.axes.z, cell.z);
+        if is_odd { self.odd } else { self.even }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbours_differ_across_every_axis_that_counts() {
+        let axes = Axes { x: true, y: false, z: true };
+        let checker = Checker { even: Rgb::ONE, odd: Rgb::ZERO, size: 0.5, origin: DVec3::ZERO, axes };
+        let at = |x: f64, y: f64, z: f64| Texture::Checker(checker).at(DVec3::new(x, y, z));
+        assert_eq!(at(0.1, 0.0, 0.1), Rgb::ONE);
+        assert_eq!(at(-0.1, 0.0, 0.1), Rgb::ZERO);
+        assert_eq!(at(0.1, 0.0, 0.6), Rgb::ZERO);
+        assert_eq!(at(-0.1, 0.0, -0.1), Rgb::ONE);
+        assert_eq!(at(0.1, 0.7, 0.1), Rgb::ONE, "height does not count");
+    }
+}

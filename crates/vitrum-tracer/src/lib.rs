@@ -1,0 +1,30 @@
+//! From a resolved scene to radiance on a film.
+//!
+//! Knows no files, clocks, environment variables or terminals. Read in this order: [`Scene`] (immutable, everything
+//! resolved), [`Plan`] (what the scene needs, and what it can skip), [`render`] (tiles, samples, film), `walker` (the ray
+//! tree: the hot loop).
+//!
+//! Threads never change the image: every random number is a function of its address, every pixel is summed in a fixed
+//! order.
+
+mod background;
+mod camera;
+mod direct;
+mod film;
+mod light;
+mod plan;
+mod render;
+mod scene;
+mod settings;
+mod stats;
+mod walker;
+
+pub use background::Background;
+pub use camera::{Camera, CameraError, Projection};
+pub use film::Film;
+pub use light::{Falloff, Light};
+pub use plan::Plan;
+pub use render::{Progress, RenderError, Rendering, render};
+pub use scene::{Scene, SceneError, SceneObject};
+pub use settings::{Crop, Settings, ShadowMode};
+pub use stats::{Dropped, GivenUp, Stats};

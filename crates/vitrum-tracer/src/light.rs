@@ -1,0 +1,87 @@
+//! Lights that no ray can hit: points and directions.
+
+use vitrum_math::{DVec3, Rgb};
+
+/// How a point light fades with distance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Falloff {
+    /// As physics has it: irradiance is intensity over distance squared.
+    InverseSquare,
+    /// Not at all: the intensity is the irradiance at any distance. A textbook's light, not a real one.
+    None,
+}
+
+/// A light that arrives from exactly one direction at each point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Light {
+    /// Shines from a point.
+    Point {
+        /// Where it is, metres.
+        position: DVec3,
+        /// Radiant intensity, W/sr per channel.
+        intensity: Rgb,
+        /// How it fades.
+        falloff: Falloff,
+        /// False for light that goes through everything.
+        shadows: bool,
+    },
+    /// Shines from infinitely far away.
+    Directional {
+        /// Unit vector towards the light.
+        towards: DVec3,
+        /// Irradiance on a surface that faces the light, W/m² per channel.
+        irradiance: Rgb,
+        /// False for light that goes through everything.
+        shadows: bool,
+    },
+}
+
+/// Light as it arrives at a point, before anything is in the way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arrival {
+    /// Unit vector towards the light.
+    pub towards: DVec3,
+    /// How far away the light is, metres.
+    pub distance: f64,
+    /// Irradiance on a surface that faces the light.
+    pub irradiance: Rgb,
+}
+
+impl Light {
+    /// The light that arrives at `point`; `None` at the light itself.
+    #[inline]
+    pub fn arriving_at(&self, point: DVec3) -> Option<Arrival> {
+        match *self {
+            Self::Point { position, intensity, falloff, .. } => {
+                let offset = position - point;
+                let distance_squared = offset.dot(offset);
+                if distance_squared == 0.0 {
+                    return None;
+                }
+                let distance = distance_squared.sqrt();
+                let irradiance = match falloff {
+                    Falloff::InverseSquare => intensity / distance_squared,
+                    Falloff::None => intensity,
+                };
+                Some(Arrival { towards: offset / distance, distance, irradiance })
+            }
+            Self::Directional { towards, irradiance, .. } => {
+                Some(Arrival { towards, distance: f64::INFINITY, irradiance })
+            }
+        }
+    }
+
+    /// True when objects block it.
+    pub fn casts_shadows(&self) -> bool {
+        match self {
+            Self::Point { shadows, .. } | Self::Directional { shadows, .. } => *shadows,
+        }
+    }
+
+    /// True when it sends out nothing.
+    pub fn is_dark(&self) -> bool {
+        match self {
+            Self::Point { intensity: colour, .. } | Self::Directional { irradiance: colour, .. } => *colour == Rgb::ZERO,
+        }
+    }
+}

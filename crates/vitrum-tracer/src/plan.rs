@@ -1,0 +1,92 @@
+//! What a scene needs, and what it can skip.
+//!
+//! Decided once, before the first ray. A skipped feature executes none of its instructions.
+
+use crate::scene::Scene;
+use crate::settings::{Settings, ShadowMode};
+use vitrum_geometry::Shape;
+use vitrum_materials::{Material, Texture};
+
+/// What a scene needs; `false` and zero mean that nothing of the kind runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plan {
+    /// Lights that are asked at each point that can answer them. Without any: no light loop and no shadow rays.
+    pub lights: usize,
+    /// Lights that objects block.
+    pub shadow_lights: usize,
+    /// Ambient light.
+    pub ambient: bool,
+    /// Glass: refraction, and trees of rays.
+    pub dielectrics: bool,
+    /// Mirrors.
+    pub mirrors: bool,
+    /// Textures that vary.
+    pub textures: bool,
+    /// Meshes with interpolated normals.
+    pub smooth_normals: bool,
+    /// Meshes, each with its own tree.
+    pub meshes: usize,
+    /// A tree over the objects; without it they are tried one by one.
+    pub object_tree: bool,
+    /// Random points on a lens.
+    pub lens: bool,
+    /// Shadow rays go through glass.
+    pub straight_shadows: bool,
+    /// Objects that were left out because nothing can see them.
+    pub invisible: usize,
+    /// The largest radiance that can arrive at a point from anywhere, where the scene bounds it: no lights of zero size,
+    /// and no surface that returns more than it receives.
+    pub radiance_bound: Option<f64>,
+}
+
+impl Plan {
+    /// Looks at the scene.
+    pub fn new(scene: &Scene, settings: &Settings) -> Self {
+        let materials = scene.materials();
+        let objects = scene.aggregate().objects();
+        let answers = materials.iter().filter_map(Material::phong).any(|p| p.kd > 0.0 || p.ks > 0.0);
+        let lights = if answers { scene.lights.len() } else { 0 };
+        let shadow_lights = scene.lights.iter().take(lights).filter(|l| l.casts_shadows()).count();
+        let dielectrics = materials.iter().any(Material::is_dielectric);
+        let varies = |t: &Texture| matches!(t, Texture::Checker(_));
+        let textures = materials.iter().any(|m| match m {
+            Material::Emissive { radiance } => varies(radiance),
+            _ => m.phong().is_some_and(|p| (p.ka > 0.0 || p.kd > 0.0) && varies(&p.colour)),
+        });
+        let meshes = objects.iter().filter_map(|o| match o.shape() {
+            Shape::Mesh(mesh) => Some(mesh),
+            _ => None,
+        });
+        let ambient = scene.ambient != vitrum_math::Rgb::ZERO
+            && materials.iter().filter_map(Material::phong).any(|p| p.ka > 0.0);
+        Self {
+            lights,
+            shadow_lights,
+            ambient,
+            dielectrics,
+            mirrors: materials.iter().any(|m| matches!(m, Material::Reflective { .. })),
+            textures,
+            smooth_normals: meshes.clone().any(|m| m.is_smooth()),
+            meshes: meshes.count(),
+            object_tree: scene.aggregate().uses_tree(),
+            lens: scene.camera.has_lens(),
+            straight_shadows: settings.shadow == ShadowMode::Straight && shadow_lights > 0 && dielectrics,
+            invisible: scene.invisible().len(),
+            radiance_bound: (lights == 0 && !ambient).then(|| radiance_bound(scene)).flatten(),
+        }
+    }
+}
+
+/// The brightest background or emission, if no surface amplifies.
+fn radiance_bound(scene: &Scene) -> Option<f64> {
+    let mut bound = scene.background.brightest();
+    for material in scene.materials() {
+        match material {
+            Material::Emissive { radiance: Texture::Constant(c) } => bound = bound.max(c.max_element()),
+            Material::Emissive { radiance: Texture::Checker(c) } => bound = bound.max(c.even.max(c.odd).max_element()),
+            Material::Transparent(t) if (t.kr + t.kt).max_element() > 1.0 => return None,
+            _ => {}
+        }
+    }
+    Some(bound)
+}

@@ -1,0 +1,171 @@
+//! Tiles, samples and threads.
+
+use crate::film::{Film, Pixel, PixelSum, rounds};
+use crate::plan::Plan;
+use crate::scene::Scene;
+use crate::settings::{Crop, Settings};
+use crate::stats::{Dropped, Stats};
+use crate::walker::Walker;
+use rayon::prelude::*;
+use std::ops::Range;
+use vitrum_math::{NodeKey, Purpose, Rgb, SampleAddress};
+
+/// Whoever watches a render. Asked from many threads.
+pub trait Progress: Sync {
+    /// A tile is done: so many more samples and rays.
+    fn advance(&self, samples: u64, rays: u64);
+    /// True when the render should stop with what there is.
+    fn is_stopped(&self) -> bool {
+        false
+    }
+}
+
+/// Nobody watches.
+impl Progress for () {
+    fn advance(&self, _samples: u64, _rays: u64) {}
+}
+
+/// What a render leaves.
+#[derive(Clone, Debug)]
+pub struct Rendering {
+    /// The pixels.
+    pub film: Film,
+    /// What was counted.
+    pub stats: Stats,
+    /// What the scene needed.
+    pub plan: Plan,
+    /// True when all samples were taken; false when the render was stopped.
+    pub complete: bool,
+}
+
+/// Settings that make no picture.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RenderError {
+    /// An image without pixels, or with more than 2³¹.
+    #[error("an image of {0} × {1} pixels can't be rendered: each side must be at least 1 and all pixels at most 2^28")]
+    Size(u32, u32),
+    /// No samples.
+    #[error("0 samples per pixel make no picture: ask for at least 1")]
+    NoSamples,
+    /// A part that is empty or not inside the image.
+    #[error("the crop of {width} × {height} pixels at ({x}, {y}) is not inside the image", x = .0.x, y = .0.y, width = .0.width, height = .0.height)]
+    Crop(Crop),
+    /// Threads could not be started.
+    #[error("could not start threads: {0}")]
+    Threads(String),
+}
+
+/// Renders a scene.
+///
+/// # Errors
+/// [`RenderError`] for settings that make no picture.
+pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Result<Rendering, RenderError> {
+    check(settings)?;
+    let plan = Plan::new(scene, settings);
+    let mut film = Film::new(settings.area());
+    let mut stats = Stats::default();
+    let tiles = tiles(settings);
+    let pool = match settings.threads {
+        1 => None,
+        n => {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build();
+            Some(pool.map_err(|e| RenderError::Threads(e.to_string()))?)
+        }
+    };
+    for samples in rounds(settings.spp) {
+        let work = |tile: &Crop| {
+            (!progress.is_stopped()).then(|| {
+                let done = render_tile(scene, settings, &plan, *tile, samples.clone());
+                progress.advance(done.1.samples, done.1.rays());
+                done
+            })
+        };
+        let done: Vec<_> = match &pool {
+            None => tiles.iter().map(work).collect(),
+            Some(pool) => pool.install(|| tiles.par_iter().map(work).collect()),
+        };
+        for (tile, (pixels, tile_stats)) in tiles.iter().zip(&done).filter_map(|(t, d)| Some((t, d.as_ref()?))) {
+            film.add(*tile, pixels);
+            stats.merge(tile_stats);
+        }
+        if done.iter().any(Option::is_none) {
+            return Ok(Rendering { film, stats, plan, complete: false });
+        }
+    }
+    Ok(Rendering { film, stats, plan, complete: true })
+}
+
+fn check(settings: &Settings) -> Result<(), RenderError> {
+    let [width, height] = settings.size;
+    if width == 0 || height == 0 || u64::from(width) * u64::from(height) > 1 << 28 {
+        return Err(RenderError::Size(width, height));
+    }
+    if settings.spp == 0 {
+        return Err(RenderError::NoSamples);
+    }
+    let area = settings.area();
+    let inside = |start: u32, length: u32, whole: u32| {
+        length > 0 && start.checked_add(length).is_some_and(|end| end <= whole)
+    };
+    if inside(area.x, area.width, width) && inside(area.y, area.height, height) {
+        Ok(())
+    } else {
+        Err(RenderError::Crop(area))
+    }
+}
+
+/// The squares that the area is cut into, row by row.
+fn tiles(settings: &Settings) -> Vec<Crop> {
+    let area = settings.area();
+    let edge = settings.tile.max(1);
+    let starts = |from: u32, length: u32| (from..from + length).step_by(edge as usize);
+    let cut = |start: u32, from: u32, length: u32| edge.min(from + length - start);
+    starts(area.y, area.height)
+        .flat_map(|y| starts(area.x, area.width).map(move |x| (x, y)))
+        .map(|(x, y)| {
+            Crop { x, y, width: cut(x, area.x, area.width), height: cut(y, area.y, area.height) }
+        })
+        .collect()
+}
+
+/// The sums of a range of samples over a tile, row by row.
+fn render_tile(
+    scene: &Scene,
+    settings: &Settings,
+    plan: &Plan,
+    tile: Crop,
+    samples: Range<u32>,
+) -> (Vec<Pixel>, Stats) {
+    let mut walker = Walker::new(scene, settings, plan);
+    let mut pixels = Vec::with_capacity(tile.width as usize * tile.height as usize);
+    let mut sum = PixelSum::default();
+    for y in tile.y..tile.y + tile.height {
+        for x in tile.x..tile.x + tile.width {
+            sum.clear();
+            for sample in samples.clone() {
+                let address = SampleAddress::new(settings.seed, x, y, sample);
+                let [dx, dy] = address.pair(NodeKey::ROOT, Purpose::Film);
+                let lens = || address.pair(NodeKey::ROOT, Purpose::Lens);
+                let ray = scene.camera.ray(f64::from(x) + dx, f64::from(y) + dy, settings.size, lens);
+                let radiance = walker.radiance(ray);
+                let rounded = round(radiance);
+                if rounded.is_none() {
+                    walker.stats.dropped += 1;
+                    walker.stats.first_dropped.get_or_insert(Dropped { y, x, sample });
+                }
+                sum.push(rounded);
+                sum.given_up += walker.given_up;
+            }
+            walker.stats.samples += samples.len() as u64;
+            pixels.push(Pixel { sum: sum.total(), counted: sum.counted, given_up: sum.given_up });
+        }
+    }
+    (pixels, walker.stats)
+}
+
+/// A sample as the film takes it, rounded once; `None` when it is not finite or negative.
+fn round(radiance: Rgb) -> Option<[f32; 3]> {
+    let rounded = radiance.to_array().map(|c| c as f32);
+    rounded.iter().all(|c| c.is_finite() && *c >= 0.0).then_some(rounded)
+}

@@ -1,0 +1,78 @@
+//! What a render did, counted.
+
+use vitrum_geometry::Counters;
+
+/// Counts of one render. Sums and maxima only, so that they don't depend on the order of the work.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stats {
+    /// Samples taken.
+    pub samples: u64,
+    /// Rays from the camera.
+    pub camera_rays: u64,
+    /// Rays that stayed on their side of a surface.
+    pub reflected_rays: u64,
+    /// Rays that crossed a surface.
+    pub transmitted_rays: u64,
+    /// Rays towards lights.
+    pub shadow_rays: u64,
+    /// The largest depth of a ray that was traced.
+    pub deepest: u32,
+    /// Hits where an interpolated normal put a direction on the wrong side, so that the geometric normal was used.
+    pub normal_fallbacks: u64,
+    /// Rare events of the ray queries.
+    pub geometry: Counters,
+    /// Samples that were not finite, or negative, and were left out.
+    pub dropped: u64,
+    /// The first of them in the order of pixels and samples.
+    pub first_dropped: Option<Dropped>,
+}
+
+/// A sample that was left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Dropped {
+    /// Row.
+    pub y: u32,
+    /// Column.
+    pub x: u32,
+    /// Index of the sample.
+    pub sample: u32,
+}
+
+/// Energy that was not followed, as weight: at most this share of the radiance that would have arrived is missing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GivenUp {
+    /// Mean over the pixels.
+    pub mean: f64,
+    /// Largest mean over the samples of one pixel.
+    pub largest: f64,
+}
+
+impl Stats {
+    /// Rays of all kinds.
+    pub fn rays(&self) -> u64 {
+        self.camera_rays + self.reflected_rays + self.transmitted_rays + self.shadow_rays
+    }
+
+    /// Nodes of the ray trees: all rays but those towards lights.
+    pub fn nodes(&self) -> u64 {
+        self.camera_rays + self.reflected_rays + self.transmitted_rays
+    }
+
+    /// Adds what another part of the image counted.
+    pub(crate) fn merge(&mut self, other: &Self) {
+        self.samples += other.samples;
+        self.camera_rays += other.camera_rays;
+        self.reflected_rays += other.reflected_rays;
+        self.transmitted_rays += other.transmitted_rays;
+        self.shadow_rays += other.shadow_rays;
+        self.deepest = self.deepest.max(other.deepest);
+        self.normal_fallbacks += other.normal_fallbacks;
+        self.geometry.contradictions += other.geometry.contradictions;
+        self.geometry.clamped += other.geometry.clamped;
+        self.dropped += other.dropped;
+        self.first_dropped = match (self.first_dropped, other.first_dropped) {
+            (Some(a), Some(b)) => Some(a.min(b)),
+            (a, b) => a.or(b),
+        };
+    }
+}

@@ -1,0 +1,13 @@
+//! Scenes whose picture is known in closed form, through the whole pipeline: camera, geometry, materials, ray tree, film.
+//! Every expected number comes from a formula or a published table, none from this program.
+
+mod bubble;
+mod chain;
+mod constant_furnace;
+mod critical_angle;
+mod invisible;
+mod mesh_sphere;
+mod prism;
+mod reference;
+mod slab;
+mod stage;
