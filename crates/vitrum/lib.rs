@@ -32,7 +32,6 @@
 //!     name: "ball".to_owned(),
 //!     object: Object::new(sphere, &Transform::IDENTITY, false)?,
 //!     materials: vec![glass],
-//!     material_of_face: vec![],
 //! };
 //! let pinhole = Projection::Pinhole { fov: 0.6 };
 //! let camera = Camera::new(DVec3::new(0.0, 0.0, 5.0), DVec3::ZERO, DVec3::Y, pinhole)?;

@@ -1,5 +1,5 @@
-//! The standard round brilliant: 57 facets and a culet point, over a girdle of 64 sides. The girdle's diameter is 1 m, y
-//! is up, and the stone is centred on the origin.
+//! The standard round brilliant: 57 facets and a culet point, and a girdle of 64 sides. The girdle's diameter
+//! is 1 m, y is up, and the stone is centred on the origin.
 //!
 //! | facets | number | direction in the plan |
 //! |---|---|---|
@@ -10,16 +10,17 @@
 //! | lower girdle | 16 | beside each main |
 //! | pavilion mains | 8 | under the bezels |
 //!
-//! Proportions, in the terms of the laboratories, are those of Tolkowsky's angles with the wider table of today: crown
-//! angle 34.5° and pavilion angle 40.75° (M. Tolkowsky, *Diamond Design*, 1919), table 57 %, star length 50 %, lower
-//! girdle length 75 %, girdle 2.5 % where it is thickest. All lie inside the ranges of GIA's highest cut grade: table 52
-//! to 62 %, crown 31.5° to 36.5°, pavilion 40.6° to 41.8°, star 45 to 65 %, lower girdle 70 to 85 % (T. Moses and
-//! others, "A Foundation for Grading the Overall Cut Quality of Round Brilliant Cut Diamonds", *Gems & Gemology*, 2004).
-//! Lengths of stars and lower girdle facets are measured in the plan.
+//! Proportions, in the terms of the laboratories, are those of Tolkowsky's angles with the wider table of
+//! today: crown angle 34.5° and pavilion angle 40.75° (M. Tolkowsky, *Diamond Design*, 1919), table 57 %,
+//! star length 50 %, lower girdle length 75 %, girdle 2.5 % where it is thickest. All lie inside the ranges
+//! of GIA's highest cut grade: table 52 % to 62 %, crown 31.5° to 36.5°, pavilion 40.6° to 41.8°, star length
+//! 45 % to 65 %, lower girdle 70 % to 85 % (T. Moses and others, "A Foundation for Grading the Overall Cut
+//! Quality of Round Brilliant Cut Diamonds", *Gems & Gemology*, 2004). Lengths of stars and lower girdle
+//! facets are measured in the plan, from the table's side or the girdle.
 //!
-//! Every vertex is where its facets' planes cut a vertical line, so facets are planar to rounding. The girdle is
-//! vertical and scalloped: thickest under the bezels and between them, thinnest in the middle of each girdle facet.
-//! Normals are flat, one for each facet.
+//! Every vertex is where its facets' planes cut a vertical line, so facets are planar to rounding. The girdle
+//! is vertical and scalloped: thickest under the bezels and between them, thinnest in the middle of each
+//! girdle facet. Normals are flat, one for each facet.
 
 use std::{array, iter};
 
@@ -56,8 +57,8 @@ pub(crate) fn mesh() -> MeshData {
     let table_y = (crown_height + GIRDLE_THICKNESS + pavilion_height) / 2.0;
     let culet_y = -table_y;
 
-    // Between two bezels, and between two mains, their planes meet. They fall by the cosine of π/8 less than under the
-    // middle of the facet, and the table's side is as much nearer than its corners.
+    // Between two bezels, and between two mains, their planes meet. They fall by the cosine of π/8 less than
+    // under the middle of the facet, and the table's side is as much nearer than its corners.
     let cosine = circle::point(1, 16).x;
     let table_side = TABLE_RADIUS * cosine;
     let star_radius = table_side + STAR_LENGTH * (RADIUS - table_side);
@@ -112,8 +113,8 @@ impl Stone {
         array::from_fn(|k| self.vertex(circle::around_y(2 * k + first, 16, radius, y)))
     }
 
-    /// One edge of the girdle. It has height `y` where two girdle facets meet, every sixteenth of a turn; between, it
-    /// lies on the plane of the facet, which its two ends and one of the `apexes` span.
+    /// One edge of the girdle. It has height `y` where two girdle facets meet, every sixteenth of a turn;
+    /// between, it lies on the plane of the facet, which its two ends and one of the `apexes` span.
     fn girdle(&mut self, apexes: [u32; 8], y: f64) -> Vec<u32> {
         let rim = |side: usize| circle::around_y(side, GIRDLE_SIDES, RADIUS, y);
         let mut ring = Vec::new();

@@ -1,5 +1,6 @@
-//! Points on the unit circle, exact in their symmetries: multiples of a quarter turn have exact zeros and ones, and
-//! mirrored points are mirrored to the last bit. Sine and cosine are libm's, so that they are the same everywhere.
+//! Points on the unit circle, exact in their symmetries: multiples of a quarter turn have exact zeros and
+//! ones, and mirrored points are mirrored to the last bit. Sine and cosine are libm's, so that they are the
+//! same everywhere.
 
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4};
 

@@ -1,9 +1,10 @@
-//! A torus knot: a tube of round cross-section along the (2, 3) torus knot, the trefoil. Metres; the knot stands
-//! upright on its axis z, centred on the origin, one lobe up, and fits in a cube of 2 m.
+//! A torus knot: a tube of round cross-section along the (2, 3) torus knot, the trefoil. Metres; the knot
+//! stands upright on its axis z, centred on the origin, one lobe up, and fits in a cube of 2 m.
 //!
-//! The curve winds twice around the axis and three times around a torus of radii `MAJOR` and `MINOR`. It lies on that
-//! torus, so the torus's own normal is perpendicular to it everywhere and closes after one round: with the normal and
-//! the tangent it makes the frame of the tube, without twist to correct. Normals are those of the round tube.
+//! The curve winds twice around the axis and three times around a torus of radii `MAJOR` and `MINOR`. It lies
+//! on that torus, so the torus's own normal is perpendicular to it everywhere and closes after one round:
+//! with the normal and the tangent it makes the frame of the tube, without twist to correct. Normals are
+//! those of the round tube.
 
 use glam::{DVec2, DVec3};
 use vitrum_geometry::mesh::MeshData;
@@ -44,8 +45,8 @@ pub(crate) fn mesh() -> MeshData {
     let uv_index = |i: usize, j: usize| (i * (AROUND + 1) + j) as u32;
     for i in 0..ALONG {
         for j in 0..AROUND {
-            // The frame twists around the tube: this diagonal turns back against the twist. It is the shorter, and a
-            // ridge; the other would be a valley.
+            // The frame twists around the tube: this diagonal turns back against the twist. It is the
+            // shorter, and a ridge; the other would be a valley.
             for [a, b, c] in [[(0, 0), (1, 0), (0, 1)], [(1, 0), (1, 1), (0, 1)]] {
                 mesh.triangles.push([a, b, c].map(|(u, v)| index(i + u, j + v)));
                 mesh.uv_triangles.push([a, b, c].map(|(u, v)| uv_index(i + u, j + v)));

@@ -1,7 +1,7 @@
 //! Writes the meshes of the gallery as OBJ files: `cargo run --example gallery_meshes -- [FOLDER]`.
 //!
-//! FOLDER is `scenes/gallery/meshes` if it is not given, and has to exist. The files are the same bytes on every
-//! machine; a test of the package compares those in the repository with what this program makes.
+//! FOLDER is `scenes/gallery/meshes` if it is not given, and has to exist. The files are the same bytes on
+//! every machine; a test of the package compares those in the repository with what this program makes.
 
 mod brilliant;
 mod circle;

@@ -1,7 +1,7 @@
 //! A mesh as the text of an OBJ file.
 //!
-//! Coordinates have nine significant digits, which is what tells every `f32` from its neighbours, in their shortest
-//! form. Below 1e-12 a number is rounding noise of a zero, and is written as one.
+//! Coordinates have nine significant digits, which is what tells every `f32` from its neighbours, in their
+//! shortest form. Below 1e-12 a number is rounding noise of a zero, and is written as one.
 
 use std::fmt::Write;
 

@@ -1,9 +1,9 @@
 //! A wine glass: a profile turned around the y axis. Metres; 0.20 m high, it stands on y = 0.
 //!
-//! The profile is one smooth curve in the (r, y) half-plane, from the axis below the foot, around the foot, up the
-//! stem, up the outside of the bowl, over the rounded lip, and down the inside to the axis again: the glass is solid
-//! throughout, its wall 1.2 mm thick at the lip and some 4 mm near the stem. It is a chain of cubic Bézier curves that share
-//! their tangents at the knots, so the normals are continuous everywhere.
+//! The profile is one smooth curve in the (r, y) half-plane, from the axis below the foot, around the foot,
+//! up the stem, up the outside of the bowl, over the rounded lip, and down the inside to the axis again: the
+//! glass is solid throughout, its wall 1.2 mm thick at the lip and some 4 mm near the stem. It is a chain of
+//! cubic Bézier curves that share their tangents at the knots, so the normals are continuous everywhere.
 
 use glam::{DVec2, DVec3};
 use vitrum_geometry::mesh::MeshData;

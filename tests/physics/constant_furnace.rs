@@ -16,9 +16,14 @@ fn the_disc_shows_one_minus_what_the_depth_limit_cuts() {
             let glass = object("ball", unit_sphere(), clear_glass(kr, kt, 1.0, n));
             let scene = white(vec![glass], camera(Projection::Orthographic { height }, 10.0));
             for depth in 0..=8u32 {
-                let settings =
-                    Settings { size: [size; 2], spp: 4, max_depth: depth, cutoff: 0.0, ..Settings::default() };
-                let expected = if depth == 0 { 0.0 } else { 1.0 - kt * kr.powi(depth as i32 - 1) };
+                let settings = Settings {
+                    size: [size; 2],
+                    spp: 4,
+                    max_depth: depth,
+                    cutoff: 0.0,
+                    ..Settings::default()
+                };
+                let expected = if depth == 0 { 0.0 } else { 1.0 - kt * kr.powi(depth.cast_signed() - 1) };
                 let mut inside = 0;
                 for (i, pixel) in (0u32..).zip(picture(&scene, &settings)) {
                     // The farthest and the nearest corner of the pixel from the axis, in radii.

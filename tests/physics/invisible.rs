@@ -8,14 +8,15 @@ use vitrum::tracer::{Background, Falloff, Light, Projection, Scene, SceneObject,
 
 fn room(with: Option<SceneObject>) -> Scene {
     let axes = Axes { x: true, y: false, z: true };
-    let checker = Checker { even: Rgb::splat(0.9), odd: Rgb::splat(0.1), size: 0.5, origin: DVec3::ZERO, axes };
+    let checker =
+        Checker { even: Rgb::splat(0.9), odd: Rgb::splat(0.1), size: 0.5, origin: DVec3::ZERO, axes };
     let floor = Material::Matte(Phong { colour: Texture::Checker(checker), ka: 1.0, kd: 0.8, ..Phong::NONE });
     let plane = Shape::Plane(Plane::new(DVec3::new(0.0, -1.0, 0.0), DVec3::Y).expect("valid plane"));
     let ball = Shape::Sphere(Sphere::new(DVec3::new(-1.5, 0.0, -2.0), 1.0).expect("valid sphere"));
-    let mut objects = vec![object("floor", plane, floor), object("other", ball, clear_glass(0.1, 0.9, 1.0, 1.5))];
+    let mut objects =
+        vec![object("floor", plane, floor), object("other", ball, clear_glass(0.1, 0.9, 1.0, 1.5))];
     objects.extend(with);
-    let mut scene =
-        Scene::new(objects, camera(Projection::Pinhole { fov: 0.8 }, 6.0)).expect("valid scene");
+    let mut scene = Scene::new(objects, camera(Projection::Pinhole { fov: 0.8 }, 6.0)).expect("valid scene");
     scene.background = Background::Gradient { bottom: Rgb::splat(0.2), top: Rgb::new(0.4, 0.6, 0.9) };
     scene.ambient = Rgb::splat(0.1);
     scene.lights = vec![Light::Point {
@@ -58,10 +59,14 @@ fn straight_shadows_lose_kt_at_each_surface() {
     }
     let dimmed = picture(&dim, &settings(ShadowMode::Straight));
     let lit = picture(&clear, &settings(ShadowMode::Straight));
-    let ratios: Vec<f32> = dimmed.iter().zip(&lit).filter(|(_, l)| l[0] > 0.0).map(|(d, l)| d[0] / l[0]).collect();
+    let ratios: Vec<f32> =
+        dimmed.iter().zip(&lit).filter(|(_, l)| l[0] > 0.0).map(|(d, l)| d[0] / l[0]).collect();
     // Floor in the sphere's shadow, seen past the sphere: a quarter. Nothing is brighter than without the sphere.
     assert!(ratios.iter().filter(|&&r| (r - 0.25).abs() < 1e-6).count() > 50);
     assert!(ratios.iter().all(|&r| r <= 1.0 + 1e-6));
     let opaque = picture(&dim, &settings(ShadowMode::Opaque));
-    assert!(opaque.iter().zip(&lit).filter(|(o, l)| l[0] > 0.0 && o[0] == 0.0).count() > 50, "opaque shadows are black");
+    assert!(
+        opaque.iter().zip(&lit).filter(|(o, l)| l[0] > 0.0 && o[0] == 0.0).count() > 50,
+        "opaque shadows are black"
+    );
 }

@@ -5,7 +5,7 @@ use crate::reference::{column, table};
 use crate::stage::{camera, clear_glass, object, white};
 use std::sync::Arc;
 use vitrum::geometry::Shape;
-use vitrum::geometry::mesh::{MeshData, TriangleMesh};
+use vitrum::geometry::mesh::{MeshData, TriangleMesh, health};
 use vitrum::math::{DVec3, Ray};
 use vitrum::tracer::Projection;
 
@@ -18,9 +18,9 @@ fn prism(apex: f64) -> Shape {
     // Top, left, right in front (z = 1) are 0, 1, 2; behind 3, 4, 5.
     let triangles =
         vec![[0, 1, 2], [3, 5, 4], [0, 3, 4], [0, 4, 1], [0, 2, 5], [0, 5, 3], [1, 4, 5], [1, 5, 2]];
-    let mesh = TriangleMesh::new(&MeshData { positions, triangles, ..MeshData::default() }).expect("valid mesh");
-    assert!(mesh.is_closed());
-    Shape::Mesh(Arc::new(mesh))
+    let data = MeshData { positions, triangles, ..MeshData::default() };
+    assert!(health(&data).is_closed() && health(&data).volume().is_some_and(|v| v > 0.0));
+    Shape::Mesh(Arc::new(TriangleMesh::new(&data).expect("valid mesh")))
 }
 
 /// The deviation of a ray that meets the middle of the left side at `incidence` (radians) to its normal.
@@ -52,7 +52,10 @@ fn deviation_at_the_minimum_is_the_published_one() {
         // are single precision, which turns the sides by up to 6e-8 (3.4e-6 degrees).
         assert!((found - expected).abs() < 2e-5, "{row:?}: {found}");
         for turned in [-0.01, 0.01] {
-            assert!(deviation(n, apex, incidence + turned).to_degrees() > expected, "it is the minimum: {row:?}");
+            assert!(
+                deviation(n, apex, incidence + turned).to_degrees() > expected,
+                "it is the minimum: {row:?}"
+            );
         }
     }
 }

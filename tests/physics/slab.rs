@@ -10,7 +10,8 @@ use vitrum::tracer::Projection;
 #[test]
 fn a_slab_shifts_a_ray_by_the_closed_form() {
     let thickness = 0.3;
-    let slab = Cuboid::new(DVec3::new(-50.0, -50.0, -thickness), DVec3::new(50.0, 50.0, 0.0)).expect("valid box");
+    let slab =
+        Cuboid::new(DVec3::new(-50.0, -50.0, -thickness), DVec3::new(50.0, 50.0, 0.0)).expect("valid box");
     for n in [0.75, 1.0003, 1.5, 2.42] {
         let glass = object("slab", Shape::Cuboid(slab), clear_glass(0.0, 1.0, 1.0, n));
         let scene = white(vec![glass], camera(Projection::Pinhole { fov: 1.0 }, 5.0));
@@ -29,7 +30,10 @@ fn a_slab_shifts_a_ray_by_the_closed_form() {
             // Distance of the outgoing line from the incoming one, which passes through the origin.
             let offset = out.origin - direction * out.origin.dot(direction);
             let shift = -offset.dot(DVec3::new(a.cos(), 0.0, a.sin()));
-            assert!((shift - expected).abs() < 1e-13, "n = {n}, {degrees} degrees: {shift} instead of {expected}");
+            assert!(
+                (shift - expected).abs() < 1e-13,
+                "n = {n}, {degrees} degrees: {shift} instead of {expected}"
+            );
             assert!((out.direction - direction).length() < 1e-14, "the direction is kept");
         }
     }

@@ -9,7 +9,12 @@ use vitrum::tracer::{Background, Camera, Projection, Scene, SceneObject, Setting
 
 pub(crate) fn clear_glass(kr: f64, kt: f64, outside: f64, inside: f64) -> Material {
     let interface = Interface::new(outside, inside).expect("valid indices");
-    Material::Transparent(Transparent { phong: Phong::NONE, kr: Rgb::splat(kr), kt: Rgb::splat(kt), interface })
+    Material::Transparent(Transparent {
+        phong: Phong::NONE,
+        kr: Rgb::splat(kr),
+        kt: Rgb::splat(kt),
+        interface,
+    })
 }
 
 pub(crate) fn object(name: &str, shape: Shape, material: Material) -> SceneObject {
@@ -17,7 +22,6 @@ pub(crate) fn object(name: &str, shape: Shape, material: Material) -> SceneObjec
         name: name.to_owned(),
         object: Object::new(shape, &Transform::IDENTITY, false).expect("valid shape"),
         materials: vec![material],
-        material_of_face: vec![],
     }
 }
 

@@ -6,8 +6,9 @@
 #   DEPTH         vitrum's max_depth, 10
 #   PAIRS         timed pairs, 5; at least 5
 #
-# VITRUM names the program; unset, it is built (release). Prints the wall seconds and the ratio of each pair, their
-# geometric mean and range, and the difference of the two pictures. README.md explains the settings.
+# VITRUM names the program; unset, it is built (release). Prints for each pair the wall seconds of both programs, the
+# seconds that POV-Ray says it traced for, and two ratios: of the wall seconds, and of POV-Ray's tracing alone to all of
+# vitrum. Then their geometric means and ranges, and the difference of the two pictures. README.md explains the settings.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(cd "$here/../../.." && pwd)
@@ -67,24 +68,37 @@ if ((samples != width * height * side * side)); then
     exit 1
 fi
 echo "$size, $((side * side)) samples per pixel ($samples in all), max_depth $depth, 2 threads"
-grep -m1 'POV-Ray 3' "$scratch/povray.log"
+povray --version 2>&1 | sed -n '/^POV-Ray/p'
 grep -m1 'Max Level' "$scratch/povray.log"
 
-printf '%4s %10s %10s %8s\n' pair vitrum povray ratio
+printf '%4s %10s %10s %10s %8s %8s\n' pair vitrum povray tracing ratio strict
 for ((pair = 1; pair <= pairs; pair++)); do
     # Who goes first changes from pair to pair, so that a drift of the machine's speed cancels.
     if ((pair % 2)); then
-        seconds ours; our_time=$took
-        seconds theirs -F; their_time=$took
+        seconds ours
+        our_time=$took
+        seconds theirs -F
+        their_time=$took
     else
-        seconds theirs -F; their_time=$took
-        seconds ours; our_time=$took
+        seconds theirs -F
+        their_time=$took
+        seconds ours
+        our_time=$took
     fi
-    awk -v pair="$pair" -v ours="$our_time" -v theirs="$their_time" \
-        'BEGIN { printf "%4d %9.3fs %9.3fs %8.2f\n", pair, ours, theirs, theirs / ours }' | tee -a "$scratch/pairs"
+    tracing=$(sed -n 's/.*Trace Time:.*(\([0-9.]*\) seconds).*/\1/p' "$scratch/povray.log")
+    awk -v pair="$pair" -v ours="$our_time" -v theirs="$their_time" -v tracing="$tracing" \
+        'BEGIN { printf "%4d %9.3fs %9.3fs %9.3fs %8.2f %8.2f\n", pair, ours, theirs, tracing, theirs / ours, tracing / ours }' |
+        tee -a "$scratch/pairs"
 done
-awk '{ sum += log($4); if (NR == 1 || $4 < least) least = $4; if ($4 > most) most = $4 }
-     END { printf "vitrum is %.2f times as fast (geometric mean of %d pairs, %.2f to %.2f)\n", exp(sum / NR), NR, least, most }' \
-    "$scratch/pairs"
+
+# summary COLUMN WHAT: geometric mean and range of a column of ratios.
+summary() {
+    awk -v column="$1" -v what="$2" '
+        { r = $column; sum += log(r); if (NR == 1 || r < least) least = r; if (NR == 1 || r > most) most = r }
+        END { printf "%s: %.2f (geometric mean of %d pairs, %.2f to %.2f)\n", what, exp(sum / NR), NR, least, most }' \
+        "$scratch/pairs"
+}
+summary 5 "povray / vitrum, wall seconds"
+summary 6 "povray tracing / all of vitrum"
 
 python3 "$here/difference.py" "$scratch/vitrum.png" "$scratch/povray.ppm"

@@ -1,7 +1,8 @@
 //! The closed family of models, listed once.
 
 use crate::{
-    GlossySpecular, Lambertian, PerfectSpecular, PerfectTransmitter, Real, Sample, Split, TransportMode, Vector,
+    GlossySpecular, Lambertian, PerfectSpecular, PerfectTransmitter, Real, Sample, Split, TransportMode,
+    Vector,
 };
 
 /// One scattering model with its parameters. A plain value: copy it, keep it on the stack.

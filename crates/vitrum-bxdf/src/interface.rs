@@ -82,7 +82,12 @@ impl<R: Real> Interface<R> {
     pub fn new(above: R, below: R) -> Result<Self, IndexError> {
         let (above, below) = (above.to_f64(), below.to_f64());
         let ratio = above / below;
-        if above > 0.0 && above.is_finite() && below > 0.0 && below.is_finite() && (1e-6..=1e6).contains(&ratio) {
+        if above > 0.0
+            && above.is_finite()
+            && below > 0.0
+            && below.is_finite()
+            && (1e-6..=1e6).contains(&ratio)
+        {
             Ok(Self { downward: Crossing::new(above, below), upward: Crossing::new(below, above) })
         } else {
             Err(IndexError { above, below })
@@ -108,8 +113,8 @@ impl<R: Real> Interface<R> {
         let from_above = wo.z() >= R::zero();
         let crossing = if from_above { &self.downward } else { &self.upward };
         let e_squared = crossing.e_squared(wo.z().abs());
-        // Zero is total reflection: at exactly the critical angle nothing crosses. (NaN lands here as well.)
-        if !(e_squared > R::zero()) {
+        // Zero is total reflection: at exactly the critical angle nothing crosses.
+        if e_squared <= R::zero() {
             return Refraction::TotalInternalReflection;
         }
         let eta = crossing.eta;
@@ -261,7 +266,8 @@ mod tests {
             let error_of_point_eight = libm::fma(5.0, 0.8, -4.0) / 5.0;
             let difference = exact_delta.hi + (exact_delta.lo + error_of_point_eight);
             let expected = libm::sqrt(difference * (c + 0.8)) / 0.6;
-            let Refraction::Refracted { cos_t, .. } = interface.refract(DVec3::new(libm::sqrt(1.0 - c * c), 0.0, c))
+            let Refraction::Refracted { cos_t, .. } =
+                interface.refract(DVec3::new(libm::sqrt(1.0 - c * c), 0.0, c))
             else {
                 panic!("above critical")
             };
@@ -281,7 +287,10 @@ mod tests {
                 assert!(s.is_nan() && d.is_nan() || (f64::from(s) / d - 1.0).abs() < 4e-7, "{n_i} {n_t} {c}");
             }
         }
-        assert!(matches!(Interface::new(1.0f32, 1.5).expect("valid").refract(Vec3::Z), Refraction::Refracted { .. }));
+        assert!(matches!(
+            Interface::new(1.0f32, 1.5).expect("valid").refract(Vec3::Z),
+            Refraction::Refracted { .. }
+        ));
     }
 
     #[test]
@@ -298,7 +307,9 @@ mod tests {
         for theta in angles {
             let wo = at_angle(theta, false);
             let Refraction::Refracted { wt, .. } = glass.refract(wo) else { panic!("never total") };
-            let Refraction::Refracted { wt: back, .. } = glass.refract(wt) else { panic!("no total reflection back") };
+            let Refraction::Refracted { wt: back, .. } = glass.refract(wt) else {
+                panic!("no total reflection back")
+            };
             let off: DVec3 = back - wo;
             assert!(off.length() < 1e-13, "{theta}");
         }

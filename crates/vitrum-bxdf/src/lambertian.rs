@@ -36,7 +36,8 @@ impl<R: Real> Lambertian<R> {
         let radius = u.sqrt();
         // A direction exactly in the tangent plane has density zero and can't be returned.
         let cos = (R::one() - u).at_least(R::zero()).sqrt();
-        let wi = R::Vec3::new(radius * cos_phi, radius * sin_phi, if wo.z() < R::zero() { -cos } else { cos });
+        let wi =
+            R::Vec3::new(radius * cos_phi, radius * sin_phi, if wo.z() < R::zero() { -cos } else { cos });
         let pdf = self.pdf(wo, wi);
         (pdf > R::zero()).then_some(Sample {
             wi,

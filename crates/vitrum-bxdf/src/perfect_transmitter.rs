@@ -51,9 +51,12 @@ impl<R: Real> PerfectTransmitter<R> {
         match self.split(wo, mode) {
             Split { reflected: Some(reflected), transmitted: Some(transmitted) } => {
                 let p = self.kr.mean() / (self.kr.mean() + self.kt.mean());
-                let (chosen, probability) =
-                    if uc < p { (reflected, p) } else { (transmitted, R::one() - p) };
-                Some(Sample { weight: chosen.weight / probability, pdf: Density::Discrete(probability), ..chosen })
+                let (chosen, probability) = if uc < p { (reflected, p) } else { (transmitted, R::one() - p) };
+                Some(Sample {
+                    weight: chosen.weight / probability,
+                    pdf: Density::Discrete(probability),
+                    ..chosen
+                })
             }
             Split { reflected, transmitted } => reflected.or(transmitted),
         }
@@ -99,7 +102,9 @@ mod tests {
         let wo = DVec3::new(0.6, 0.0, 0.8);
         let n = 1000;
         let mean: DVec3 = (0..n)
-            .filter_map(|i| glass().sample(wo, (f64::from(i) + 0.5) / f64::from(n), TransportMode::Importance))
+            .filter_map(|i| {
+                glass().sample(wo, (f64::from(i) + 0.5) / f64::from(n), TransportMode::Importance)
+            })
             .map(|s| s.weight)
             .fold(DVec3::ZERO, |a, b| a + b)
             / f64::from(n);

@@ -23,16 +23,16 @@ pub struct Hit {
     pub barycentrics: [f64; 2],
 }
 
-/// Rare events. All are harmless; many of them hint at a mesh with needles or overlaps.
+/// Rare events. They are harmless; many of them hint at a mesh with needles or overlaps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
-    /// Hits within the rounding error of a ray's origin that contradicted its departure, and were ignored.
+    /// Faces within the rounding error of a ray's origin that the ray can't cross, given the face that it leaves; they were
+    /// ignored.
     pub contradictions: u64,
-    /// Hits on meshes that double precision saw outside the triangle, and moved to its border.
-    pub clamped: u64,
 }
 
 /// The nearest hit so far: the smallest (t, object, face).
+#[derive(Default)]
 pub(crate) struct Nearest(Option<Hit>);
 
 impl Nearest {
@@ -42,11 +42,18 @@ impl Nearest {
         self.0.map_or(f64::INFINITY, |hit| hit.t)
     }
 
+    /// What was found.
+    #[inline]
+    pub(crate) fn found(&self) -> Option<Hit> {
+        self.0
+    }
+
     /// Takes `hit` if it comes before what stands here; true if it did.
     #[inline]
     pub(crate) fn offer(&mut self, hit: Hit) -> bool {
-        let better =
-            self.0.is_none_or(|best| hit.t < best.t || hit.t == best.t && (hit.object, hit.face) < (best.object, best.face));
+        let better = self.0.is_none_or(|best| {
+            hit.t < best.t || hit.t == best.t && (hit.object, hit.face) < (best.object, best.face)
+        });
         if better {
             self.0 = Some(hit);
         }
@@ -80,11 +87,15 @@ impl Aggregate {
             (0u32..).zip(&objects).filter_map(|(id, o)| o.bounds().map(|b| (id, b))).collect();
         let bounds = bounded.iter().fold(Bounds::EMPTY, |all, (_, b)| all.union(*b));
         let is_flat = bounded.len() <= FLAT_LIMIT;
-        let flat = (0u32..).zip(&objects).filter(|(_, o)| is_flat || o.bounds().is_none()).map(|(id, _)| id).collect();
+        let flat = (0u32..)
+            .zip(&objects)
+            .filter(|(_, o)| is_flat || o.bounds().is_none())
+            .map(|(id, _)| id)
+            .collect();
         let tree = (!is_flat).then(|| {
             let frame = UnitFrame::around(&bounds);
             let boxes = BoxTree::build(
-                bounded.iter().map(|(_, b)| (frame.to_frame(b.min).as_vec3(), frame.to_frame(b.max).as_vec3())),
+                bounded.iter().map(|(_, b)| (frame.inward(b.min).as_vec3(), frame.inward(b.max).as_vec3())),
             );
             ObjectTree { frame, boxes, objects: bounded.iter().map(|(id, _)| *id).collect() }
         });
@@ -109,7 +120,7 @@ impl Aggregate {
     /// What the ray hits first: the smallest (t, object, face) that counts.
     #[inline]
     pub fn closest(&self, query: &Query, counters: &mut Counters) -> Option<Hit> {
-        let mut nearest = Nearest(None);
+        let mut nearest = Nearest::default();
         for &id in &self.flat {
             self.objects[id as usize].closest(query, id, &mut nearest, counters);
         }
@@ -122,7 +133,7 @@ impl Aggregate {
                 ControlFlow::Continue(ray.box_limit(nearest.limit()))
             });
         }
-        nearest.0
+        nearest.found()
     }
 
     /// True when anything is hit nearer than `limit` metres.

@@ -8,15 +8,15 @@
 //!
 //! There is no scene-wide epsilon. A ray that starts on a surface carries a [`Departure`]: the object and face that it
 //! leaves, and the side that it goes to. Planar faces are excluded by identity; on spheres and cylinders the other root is
-//! a closed form; a convex solid that is left outward is not tested at all. On a mesh, a hit on *another* face within
-//! the rounding error of the origin is ignored when its sense contradicts the departure: entering what the ray is already
-//! in, or leaving what it is already out of. Such hits are neighbours at an edge, and they are counted.
+//! a closed form; a convex solid that is left outward is not tested at all. On a mesh, a hit on *another* face within the
+//! rounding error of the origin (a neighbour at an edge) counts only if the two faces stand so that the ray can cross it:
+//! outward at a convex edge, inward at a concave one. Those that don't count are counted.
 //!
 //! # Meshes
 //!
-//! Vertices are `f32` in a unit frame of their own; a ray is brought into that frame in `f64`, advanced to the bounds,
-//! and only then rounded. The tree finds candidates in `f32` with a watertight test and padded boxes; every candidate is
-//! settled in `f64`. What is returned is the smallest (t, object, face), whatever the shape of the tree.
+//! Vertices are `f32` in a unit frame of their own; a ray is brought into that frame in `f64`, advanced to the bounds, and
+//! only then rounded. The tree and a first test of each triangle work in `f32` and are conservative; a watertight test in
+//! `f64` decides. What is returned is the smallest (t, object, face), whatever the shape of the tree.
 
 mod aggregate;
 mod departure;

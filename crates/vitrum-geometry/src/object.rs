@@ -51,6 +51,15 @@ impl Object {
         &self.shape
     }
 
+    /// The number of the material of a face; 0 unless the shape is a mesh with several.
+    #[inline]
+    pub fn material_of(&self, face: u32) -> u32 {
+        match &self.shape {
+            Shape::Mesh(mesh) => mesh.material(face),
+            _ => 0,
+        }
+    }
+
     /// The box around it in the world; `None` when it is infinite.
     pub fn bounds(&self) -> Option<Bounds> {
         let own = self.shape.bounds()?;

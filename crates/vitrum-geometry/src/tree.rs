@@ -52,11 +52,13 @@ impl UnitFrame {
         Self { centre: bounds.centre(), scale, half_extent }
     }
 
-    pub(crate) fn to_frame(self, p: DVec3) -> DVec3 {
+    /// A point of the mesh or scene in this frame.
+    pub(crate) fn inward(self, p: DVec3) -> DVec3 {
         (p - self.centre) * self.scale
     }
 
-    pub(crate) fn from_frame(self, p: DVec3) -> DVec3 {
+    /// A point of this frame in the mesh or scene.
+    pub(crate) fn outward(self, p: DVec3) -> DVec3 {
         p / self.scale + self.centre
     }
 
@@ -69,7 +71,7 @@ impl UnitFrame {
     pub(crate) fn enter(&self, ray: &Ray, limit: f64) -> Option<FrameRay> {
         let direction = ray.direction * self.scale;
         let t_scale = power_of_two_above(direction.abs().max_element());
-        let exact = Ray::new(self.to_frame(ray.origin), direction / t_scale);
+        let exact = Ray::new(self.inward(ray.origin), direction / t_scale);
         let half = self.half_extent + DVec3::splat(f64::from(PAD));
         let (mut t_start, mut t_end) = (0.0f64, limit * t_scale + f64::from(PAD));
         for axis in 0..3 {
@@ -92,7 +94,8 @@ impl UnitFrame {
         // 1e-20 vanishes in the padding.
         let away_from_zero = |d: f32| if d.abs() < 1e-20 { 1e-20f32.copysign(d) } else { d };
         let reciprocal =
-            Vec3::new(away_from_zero(direction.x), away_from_zero(direction.y), away_from_zero(direction.z)).recip();
+            Vec3::new(away_from_zero(direction.x), away_from_zero(direction.y), away_from_zero(direction.z))
+                .recip();
         let origin = exact.at(t_start).as_vec3();
         Some(FrameRay { exact, t_scale, t_start, origin, direction, reciprocal })
     }
@@ -135,11 +138,16 @@ impl Boundable for Item {
 impl BoxTree {
     /// The tree over boxes in a unit frame.
     pub(crate) fn build(boxes: impl Iterator<Item = (Vec3, Vec3)>) -> Self {
-        let items: Vec<Item> = boxes.map(|(min, max)| Item(Aabb { min: min.into(), max: max.into() })).collect();
+        let items: Vec<Item> =
+            boxes.map(|(min, max)| Item(Aabb { min: min.into(), max: max.into() })).collect();
         if items.is_empty() {
             return Self { nodes: Vec::new(), items: Vec::new(), depth: 0 };
         }
-        let built = obvhs::bvh2::builder::build_bvh2(&items, BvhBuildParams::medium_build(), &mut Duration::default());
+        let built = obvhs::bvh2::builder::build_bvh2(
+            &items,
+            BvhBuildParams::medium_build(),
+            &mut Duration::default(),
+        );
         let nodes: Vec<Node> = built
             .nodes
             .iter()
@@ -162,7 +170,12 @@ impl BoxTree {
     /// Calls `visit` for the items whose boxes the ray meets before the limit, near boxes first. `visit` returns the new
     /// limit (see [`FrameRay::box_limit`]), or breaks off.
     #[inline]
-    pub(crate) fn traverse(&self, ray: &FrameRay, limit: f32, visit: impl FnMut(u32, f32) -> ControlFlow<(), f32>) {
+    pub(crate) fn traverse(
+        &self,
+        ray: &FrameRay,
+        limit: f32,
+        visit: impl FnMut(u32, f32) -> ControlFlow<(), f32>,
+    ) {
         if self.nodes.is_empty() {
         } else if self.depth < SHALLOW {
             self.traverse_with(&mut [(0, 0.0); SHALLOW], ray, limit, visit);

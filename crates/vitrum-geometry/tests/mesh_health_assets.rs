@@ -1,9 +1,10 @@
-//! Mesh health on real files: the counts of an independent program (the index of the assets), and what mending does.
+//! Mesh health on real files: the counts of an independent program (the index of the assets), and what
+//! mending does.
 //!
-//! The index counts the wall with a hole without the lines that continue another (57 faces, 15 open edges); with them
-//! its eleven faces without area, left by fans over collinear corners, are what closes it. It counts duplicate and
-//! doubled faces together, and as one body what touches in a vertex; here
-//! bodies are connected through edges, so that the teapot's parts come apart, the monkey's eyes and the dragon's crumbs.
+//! The index counts the wall with a hole without the lines that continue another (57 faces, 15 open edges);
+//! with them its eleven faces without area, left by fans over collinear corners, are what closes it. It
+//! counts duplicate and doubled faces together, and as one body what touches in a vertex; here bodies are
+//! connected through edges, so that the teapot's parts come apart, the monkey's eyes and the dragon's crumbs.
 
 use std::path::Path;
 

@@ -1,12 +1,23 @@
 //! Mesh health is quick enough to run on every mesh that is loaded: no step is slower than sorting.
 
-use std::time::Instant;
+use std::{hint::black_box, time::Instant};
 
 use glam::DVec3;
 use vitrum_geometry::mesh::{Defect, MeshData, Triangle, health};
 
-/// Seconds allowed, about ten times what an idle machine needs with assertions on.
-const LIMIT: f64 = 2.0;
+/// Seconds allowed: five times and more what a busy machine of two cores needs, with assertions on.
+const LIMIT: f64 = 3.0;
+
+/// The least time of a few runs, in seconds: what else the machine does only adds to it.
+#[expect(clippy::disallowed_methods, reason = "a test of time needs a clock")]
+fn seconds(mesh: &MeshData) -> f64 {
+    let run = |_| {
+        let start = Instant::now();
+        black_box(health(mesh));
+        start.elapsed().as_secs_f64()
+    };
+    (0..5).map(run).fold(f64::INFINITY, f64::min)
+}
 
 /// A grid of quads that closes in both directions, with scattered positions.
 fn torus(columns: u32, rows: u32) -> MeshData {
@@ -37,18 +48,12 @@ fn octahedra(centres: impl Iterator<Item = (DVec3, f64)>) -> MeshData {
     mesh
 }
 
-#[expect(clippy::disallowed_methods, reason = "a test of time needs a clock")]
-fn now() -> Instant {
-    Instant::now()
-}
-
 #[test]
 fn one_body_of_two_hundred_thousand_faces() {
     let mesh = torus(400, 250);
-    let start = now();
     let report = health(&mesh);
-    let seconds = start.elapsed().as_secs_f64();
     assert!(report.is_closed() && report.components.len() == 1 && report.triangles == 200_000);
+    let seconds = seconds(&mesh);
     assert!(seconds < LIMIT, "{seconds} s");
 }
 
@@ -60,10 +65,9 @@ fn twenty_five_thousand_bubbles_in_one_body() {
         (centre, 0.4)
     });
     let mesh = octahedra(bubbles.chain([(DVec3::splat(15.0), 100.0)]));
-    let start = now();
     let report = health(&mesh);
-    let seconds = start.elapsed().as_secs_f64();
     assert_eq!(report.components.iter().filter(|body| body.depth == 1).count(), 25_000);
     assert_eq!(report.count(Defect::InsideOut), 0);
+    let seconds = seconds(&mesh);
     assert!(seconds < LIMIT, "{seconds} s");
 }

@@ -71,6 +71,12 @@ impl<'a> Source<'a> {
         Span { start, end: end_start + end_line.len() }
     }
 
+    /// `span` grown to before the next line that begins with a bracket, as the headers of a TOML file do.
+    pub(crate) fn up_to_next_header(&self, span: Span) -> Span {
+        let after = self.text.get(span.end..).unwrap_or("");
+        Span { end: after.find("\n[").map_or(self.text.len(), |length| span.end + length), ..span }
+    }
+
     fn line_index(&self, offset: usize) -> usize {
         self.line_starts.partition_point(|&start| start <= offset) - 1
     }

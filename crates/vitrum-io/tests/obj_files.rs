@@ -1,9 +1,7 @@
 //! Every OBJ file of the assets does what `expectations/obj.toml` says, and no damaged copy of one makes the reader
 //! panic or hang. Needs the folder of assets: `VITRUM_ASSETS`.
 
-#![expect(clippy::print_stderr, reason = "a skipped test says so")]
-
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -12,17 +10,8 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use toml::de::{DeTable, DeValue};
 use vitrum_io::obj::{self, ObjFile};
-
-/// The folder of assets, or `None` (said) where there is none.
-fn assets() -> Option<PathBuf> {
-    match std::env::var_os("VITRUM_ASSETS") {
-        Some(folder) if folder != "none" => Some(PathBuf::from(folder)),
-        _ => {
-            eprintln!("skipped: VITRUM_ASSETS is not set");
-            None
-        }
-    }
-}
+use vitrum_math::DVec3;
+use vitrum_testkit::assets;
 
 /// Folder of the assets for each section of the table.
 const FOLDERS: [(&str, &str); 3] = [("obj", "obj"), ("bad-mesh", "bad-mesh"), ("malformed", "malformed/obj")];
@@ -142,6 +131,63 @@ fn every_file_of_the_assets_does_what_the_table_says() {
         }
     }
     assert!(problems.is_empty(), "\n{}", problems.join("\n"));
+}
+
+/// Every edge has one face on each side, in opposite directions.
+fn is_closed(part: &obj::Part) -> bool {
+    let edges = part.mesh.triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
+    let edges: Vec<(u32, u32)> = edges.collect();
+    let unique: BTreeSet<(u32, u32)> = edges.iter().copied().collect();
+    unique.len() == edges.len() && unique.iter().all(|&(a, b)| unique.contains(&(b, a)))
+}
+
+#[test]
+fn closed_solids_stay_closed() {
+    let Some(assets) = assets() else { return };
+    let names = [
+        "obj/fandisk.obj",
+        "obj/spot.obj",
+        "obj/quadknot.obj",
+        "obj/rabbit.obj",
+        "bad-mesh/joined_tetrahedra.obj",
+    ];
+    for name in names {
+        let file = obj::read(&assets.join(name)).expect("loads");
+        assert!(file.parts.iter().all(is_closed), "{name}");
+    }
+    let open = obj::read(&assets.join("bad-mesh/moebius.obj")).expect("loads");
+    assert!(!is_closed(&open.parts[0]), "the check sees an open surface");
+}
+
+#[test]
+fn concave_faces_of_the_assets_are_cut_without_overlap() {
+    let Some(assets) = assets() else { return };
+    for name in ["concave_polygon.obj", "issue-319-003.obj", "wallhole.obj"] {
+        let file = obj::read(&assets.join("bad-mesh").join(name)).expect("loads");
+        let mesh = &file.parts[0].mesh;
+        let corner = |index: u32| mesh.positions[index as usize];
+        let area = |t: &[u32; 3]| (corner(t[1]) - corner(t[0])).cross(corner(t[2]) - corner(t[0]));
+        // In `wallhole.obj` each face has a plane of its own, and its vertices are shared with no other.
+        let mut faces = vec![vec![mesh.triangles[0]]];
+        for triangle in &mesh.triangles[1..] {
+            let last = faces.last_mut().expect("not empty");
+            if triangle.iter().any(|corner| last.iter().flatten().any(|other| other == corner)) {
+                last.push(*triangle);
+            } else {
+                faces.push(vec![*triangle]);
+            }
+        }
+        for face in &faces {
+            let areas: Vec<_> = face.iter().map(area).collect();
+            let whole: DVec3 = areas.iter().sum();
+            let shares: Vec<f64> =
+                areas.iter().map(|area| area.dot(whole) / whole.length_squared()).collect();
+            assert!(shares.iter().all(|&share| share > 0.0), "{name}: {shares:?}");
+            let lengths: f64 = areas.iter().map(|area| area.length()).sum();
+            // The corners have six or seven digits, so that the faces are plane to about 1e-6.
+            assert!((lengths / whole.length() - 1.0).abs() < 1e-6, "{name}");
+        }
+    }
 }
 
 #[test]
@@ -306,7 +352,7 @@ fn a_file_without_permission_says_so() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("locked.obj");
     fs::write(&path, "v 0 0 0\n").expect("writable");
-    fs::set_permissions(&path, fs::Permissions::from_mode(0)).expect("own file");
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o000)).expect("own file");
     if fs::read(&path).is_ok() {
         eprintln!("skipped: this user may read everything");
         return;

@@ -21,7 +21,8 @@ pub enum Material {
     },
     /// Phong, and glass with constant coefficients.
     Transparent(Transparent),
-    /// Sends out light on its front side; invisible to shadow rays' bookkeeping, since it is no light that is sampled.
+    /// Sends out light on its front side. It is seen, directly and in glass, but it lights nothing: it is no light source
+    /// that shadow rays look for.
     Emissive {
         /// Radiance.
         radiance: Texture,
@@ -43,8 +44,8 @@ pub struct Phong {
     pub ka: f64,
     /// Diffuse coefficient.
     pub kd: f64,
-    /// Highlight coefficient.
-    pub ks: f64,
+    /// Highlight coefficient, per channel.
+    pub ks: Rgb,
     /// Highlight exponent.
     pub exponent: f64,
 }
@@ -65,13 +66,13 @@ pub struct Transparent {
 impl Phong {
     /// No ambient, no diffuse, no highlight.
     pub const NONE: Self =
-        Self { colour: Texture::Constant(Rgb::ONE), ka: 0.0, kd: 0.0, ks: 0.0, exponent: 1.0 };
+        Self { colour: Texture::Constant(Rgb::ONE), ka: 0.0, kd: 0.0, ks: Rgb::ZERO, exponent: 1.0 };
 
     #[inline]
     fn scattering(&self, point: DVec3) -> Scattering {
         let colour = if self.ka == 0.0 && self.kd == 0.0 { Rgb::ZERO } else { self.colour.at(point) };
         let reflectance = colour * self.kd;
-        let ks = Rgb::splat(self.ks);
+        let ks = self.ks;
         Scattering {
             ambient: colour * self.ka,
             diffuse: unless_zero(reflectance, Lambertian { reflectance }),
@@ -81,7 +82,7 @@ impl Phong {
     }
 
     fn is_nothing(&self) -> bool {
-        self.ka == 0.0 && self.kd == 0.0 && self.ks == 0.0
+        self.ka == 0.0 && self.kd == 0.0 && self.ks == Rgb::ZERO
     }
 }
 
@@ -162,7 +163,7 @@ mod tests {
         assert!(Material::Transparent(clear(1.0)).is_invisible());
         assert!(!Material::Transparent(clear(1.5)).is_invisible());
         assert!(!Material::Transparent(Transparent { kt: Rgb::splat(0.9), ..clear(1.0) }).is_invisible());
-        let highlight = Phong { ks: 0.2, ..Phong::NONE };
+        let highlight = Phong { ks: Rgb::splat(0.2), ..Phong::NONE };
         assert!(!Material::Transparent(Transparent { phong: highlight, ..clear(1.0) }).is_invisible());
     }
 

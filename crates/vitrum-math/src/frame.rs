@@ -51,9 +51,17 @@ mod tests {
 
     #[test]
     fn frames_are_orthonormal_and_right_handed() {
-        for n in [DVec3::X, -DVec3::Z, DVec3::Z, unit(DVec3::new(1e-9, -1e-9, -1.0)), unit(DVec3::new(1.0, -2.0, 0.5))] {
+        for n in [
+            DVec3::X,
+            -DVec3::Z,
+            DVec3::Z,
+            unit(DVec3::new(1e-9, -1e-9, -1.0)),
+            unit(DVec3::new(1.0, -2.0, 0.5)),
+        ] {
             let f = Frame::around(n);
-            for (a, b, expected) in [(f.x, f.x, 1.0), (f.y, f.y, 1.0), (f.x, f.y, 0.0), (f.x, n, 0.0), (f.y, n, 0.0)] {
+            for (a, b, expected) in
+                [(f.x, f.x, 1.0), (f.y, f.y, 1.0), (f.x, f.y, 0.0), (f.x, n, 0.0), (f.y, n, 0.0)]
+            {
                 assert!((a.dot(b) - expected).abs() < 4e-16, "{n:?}");
             }
             assert!((f.x.cross(f.y) - n).length() < 4e-16);

@@ -131,13 +131,16 @@ mod tests {
         for (seed, m) in [(0u64, 4u32), (1, 6), (77, 8), (5, 10)] {
             for block in [0u32, 1, 3] {
                 let points: Vec<[f64; 2]> = (0..1u32 << m)
-                    .map(|i| SampleAddress::new(seed, 3, 9, (block << m) + i).pair(NodeKey::ROOT, Purpose::Film))
+                    .map(|i| {
+                        SampleAddress::new(seed, 3, 9, (block << m) + i).pair(NodeKey::ROOT, Purpose::Film)
+                    })
                     .collect();
                 for log_columns in 0..=m {
                     let (columns, rows) = (1u32 << log_columns, 1u32 << (m - log_columns));
                     let mut seen = vec![0; 1 << m];
                     for [u, v] in &points {
-                        seen[((v * f64::from(rows)) as u32 * columns + (u * f64::from(columns)) as u32) as usize] += 1;
+                        seen[((v * f64::from(rows)) as u32 * columns + (u * f64::from(columns)) as u32)
+                            as usize] += 1;
                     }
                     assert!(seen.iter().all(|&n| n == 1), "seed {seed}, 2^{m} points, {columns} columns");
                 }
@@ -148,7 +151,8 @@ mod tests {
     /// Beyond 2^16 samples the net goes on: no repetition, still stratified.
     #[test]
     fn late_blocks_are_nets_too() {
-        let points = (0..1024).map(|i| SampleAddress::new(2, 0, 0, (1 << 20) + i).pair(NodeKey::ROOT, Purpose::Lens));
+        let points =
+            (0..1024).map(|i| SampleAddress::new(2, 0, 0, (1 << 20) + i).pair(NodeKey::ROOT, Purpose::Lens));
         let mut cells: Vec<u32> = points.map(|[u, v]| (v * 32.0) as u32 * 32 + (u * 32.0) as u32).collect();
         cells.sort_unstable();
         assert_eq!(cells, (0..1024).collect::<Vec<_>>());
@@ -162,7 +166,9 @@ mod tests {
         all.push(base.pair(NodeKey::ROOT.reflected(), Purpose::Film));
         all.push(base.pair(NodeKey::ROOT.transmitted(), Purpose::Film));
         for other in [(1, 1, 2, 3), (0, 2, 1, 3), (0, 1, 2, 4), (0, 1, 3, 3)] {
-            all.push(SampleAddress::new(other.0, other.1, other.2, other.3).pair(NodeKey::ROOT, Purpose::Film));
+            all.push(
+                SampleAddress::new(other.0, other.1, other.2, other.3).pair(NodeKey::ROOT, Purpose::Film),
+            );
         }
         for (i, a) in all.iter().enumerate() {
             assert!(all[..i].iter().all(|b| a != b));

@@ -52,7 +52,8 @@ impl Affine {
     fn point_error(&self, p: DVec3, error: f64) -> f64 {
         let row = |i: usize| {
             let row = self.rows[i].abs();
-            gamma(4) * (row.dot(p.abs()) + self.translation[i].abs()) + row.dot(DVec3::splat(error)) * (1.0 + gamma(4))
+            gamma(4) * (row.dot(p.abs()) + self.translation[i].abs())
+                + row.dot(DVec3::splat(error)) * (1.0 + gamma(4))
         };
         row(0).max(row(1)).max(row(2))
     }
@@ -92,7 +93,8 @@ impl Transform {
     /// # Errors
     /// [`SingularTransform`] when a factor is zero or its reciprocal overflows.
     pub fn scale(factors: DVec3) -> Result<Self, SingularTransform> {
-        let diagonal = |d: DVec3| Affine { rows: [DVec3::X * d.x, DVec3::Y * d.y, DVec3::Z * d.z], ..Affine::IDENTITY };
+        let diagonal =
+            |d: DVec3| Affine { rows: [DVec3::X * d.x, DVec3::Y * d.y, DVec3::Z * d.z], ..Affine::IDENTITY };
         let reciprocal = factors.recip();
         if factors.is_finite() && reciprocal.is_finite() && factors.cmpne(DVec3::ZERO).all() {
             Ok(Self { forward: diagonal(factors), inverse: diagonal(reciprocal) })
@@ -198,7 +200,8 @@ mod tests {
 
     #[test]
     fn the_first_one_written_is_applied_first() {
-        let t = Transform::scale(DVec3::splat(2.0)).expect("invertible").then(&Transform::translate(DVec3::X));
+        let t =
+            Transform::scale(DVec3::splat(2.0)).expect("invertible").then(&Transform::translate(DVec3::X));
         assert_eq!(t.expect("invertible").world_point(DVec3::X), DVec3::new(3.0, 0.0, 0.0));
     }
 
@@ -233,7 +236,8 @@ mod tests {
     #[test]
     fn similarities_are_recognised() {
         let similar = Transform::scale(DVec3::new(-2.0, 2.0, 2.0)).expect("invertible");
-        let similar = similar.then(&Transform::rotate(unit(DVec3::new(3.0, 1.0, 2.0)), 1.1)).expect("invertible");
+        let similar =
+            similar.then(&Transform::rotate(unit(DVec3::new(3.0, 1.0, 2.0)), 1.1)).expect("invertible");
         assert!((similar.similarity().expect("a similarity") - 2.0).abs() < 1e-14);
         assert_eq!(composed().similarity(), None);
     }

@@ -55,15 +55,20 @@ impl Camera {
     ///
     /// # Errors
     /// [`CameraError`] when the view has no direction or no upright.
-    pub fn new(position: DVec3, target: DVec3, up: DVec3, projection: Projection) -> Result<Self, CameraError> {
+    pub fn new(
+        position: DVec3,
+        target: DVec3,
+        up: DVec3,
+        projection: Projection,
+    ) -> Result<Self, CameraError> {
         let view = target - position;
-        if !(view.length() > 0.0 && view.is_finite()) {
+        if view == DVec3::ZERO || !view.is_finite() {
             return Err(CameraError::NoDirection);
         }
         let forward = view / view.length();
         let side = forward.cross(up);
         // Parallel to within a few roundings: the cross product is then noise.
-        if !(side.length() > 1e-12 * up.length()) {
+        if side.length() <= 1e-12 * up.length() {
             return Err(CameraError::NoUpright);
         }
         let right = unit(side);
@@ -114,7 +119,8 @@ mod tests {
     use super::*;
 
     fn camera(projection: Projection) -> Camera {
-        Camera::new(DVec3::new(0.0, 1.0, 4.0), DVec3::new(0.0, 1.0, 0.0), DVec3::Y, projection).expect("valid")
+        Camera::new(DVec3::new(0.0, 1.0, 4.0), DVec3::new(0.0, 1.0, 0.0), DVec3::Y, projection)
+            .expect("valid")
     }
 
     #[test]
@@ -123,7 +129,10 @@ mod tests {
         let ray = |x, y| c.ray(x, y, [200, 100], || unreachable!("no lens"));
         assert!((ray(100.0, 50.0).direction - -DVec3::Z).length() < 1e-15);
         assert!((ray(100.0, 0.0).direction - unit(DVec3::new(0.0, 1.0, -1.0))).length() < 1e-15, "up is up");
-        assert!((ray(200.0, 50.0).direction - unit(DVec3::new(2.0, 0.0, -1.0))).length() < 1e-15, "right is right");
+        assert!(
+            (ray(200.0, 50.0).direction - unit(DVec3::new(2.0, 0.0, -1.0))).length() < 1e-15,
+            "right is right"
+        );
     }
 
     #[test]

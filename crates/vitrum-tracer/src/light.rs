@@ -81,7 +81,9 @@ impl Light {
     /// True when it sends out nothing.
     pub fn is_dark(&self) -> bool {
         match self {
-            Self::Point { intensity: colour, .. } | Self::Directional { irradiance: colour, .. } => *colour == Rgb::ZERO,
+            Self::Point { intensity: colour, .. } | Self::Directional { irradiance: colour, .. } => {
+                *colour == Rgb::ZERO
+            }
         }
     }
 }

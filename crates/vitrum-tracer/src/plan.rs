@@ -6,6 +6,7 @@ use crate::scene::Scene;
 use crate::settings::{Settings, ShadowMode};
 use vitrum_geometry::Shape;
 use vitrum_materials::{Material, Texture};
+use vitrum_math::Rgb;
 
 /// What a scene needs; `false` and zero mean that nothing of the kind runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,7 +45,7 @@ impl Plan {
     pub fn new(scene: &Scene, settings: &Settings) -> Self {
         let materials = scene.materials();
         let objects = scene.aggregate().objects();
-        let answers = materials.iter().filter_map(Material::phong).any(|p| p.kd > 0.0 || p.ks > 0.0);
+        let answers = materials.iter().filter_map(Material::phong).any(|p| p.kd > 0.0 || p.ks != Rgb::ZERO);
         let lights = if answers { scene.lights.len() } else { 0 };
         let shadow_lights = scene.lights.iter().take(lights).filter(|l| l.casts_shadows()).count();
         let dielectrics = materials.iter().any(Material::is_dielectric);
@@ -57,8 +58,8 @@ impl Plan {
             Shape::Mesh(mesh) => Some(mesh),
             _ => None,
         });
-        let ambient = scene.ambient != vitrum_math::Rgb::ZERO
-            && materials.iter().filter_map(Material::phong).any(|p| p.ka > 0.0);
+        let ambient =
+            scene.ambient != Rgb::ZERO && materials.iter().filter_map(Material::phong).any(|p| p.ka > 0.0);
         Self {
             lights,
             shadow_lights,
@@ -83,7 +84,9 @@ fn radiance_bound(scene: &Scene) -> Option<f64> {
     for material in scene.materials() {
         match material {
             Material::Emissive { radiance: Texture::Constant(c) } => bound = bound.max(c.max_element()),
-            Material::Emissive { radiance: Texture::Checker(c) } => bound = bound.max(c.even.max(c.odd).max_element()),
+            Material::Emissive { radiance: Texture::Checker(c) } => {
+                bound = bound.max(c.even.max(c.odd).max_element());
+            }
             Material::Transparent(t) if (t.kr + t.kt).max_element() > 1.0 => return None,
             _ => {}
         }

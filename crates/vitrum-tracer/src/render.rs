@@ -43,7 +43,9 @@ pub struct Rendering {
 #[non_exhaustive]
 pub enum RenderError {
     /// An image without pixels, or with more than 2³¹.
-    #[error("an image of {0} × {1} pixels can't be rendered: each side must be at least 1 and all pixels at most 2^28")]
+    #[error(
+        "an image of {0} × {1} pixels can't be rendered: each side must be at least 1 and all pixels at most 2^28"
+    )]
     Size(u32, u32),
     /// No samples.
     #[error("0 samples per pixel make no picture: ask for at least 1")]
@@ -85,7 +87,9 @@ pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Re
             None => tiles.iter().map(work).collect(),
             Some(pool) => pool.install(|| tiles.par_iter().map(work).collect()),
         };
-        for (tile, (pixels, tile_stats)) in tiles.iter().zip(&done).filter_map(|(t, d)| Some((t, d.as_ref()?))) {
+        for (tile, (pixels, tile_stats)) in
+            tiles.iter().zip(&done).filter_map(|(t, d)| Some((t, d.as_ref()?)))
+        {
             film.add(*tile, pixels);
             stats.merge(tile_stats);
         }
@@ -123,9 +127,7 @@ fn tiles(settings: &Settings) -> Vec<Crop> {
     let cut = |start: u32, from: u32, length: u32| edge.min(from + length - start);
     starts(area.y, area.height)
         .flat_map(|y| starts(area.x, area.width).map(move |x| (x, y)))
-        .map(|(x, y)| {
-            Crop { x, y, width: cut(x, area.x, area.width), height: cut(y, area.y, area.height) }
-        })
+        .map(|(x, y)| Crop { x, y, width: cut(x, area.x, area.width), height: cut(y, area.y, area.height) })
         .collect()
 }
 

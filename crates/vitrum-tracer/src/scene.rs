@@ -14,10 +14,9 @@ pub struct SceneObject {
     pub name: String,
     /// The shape in its place.
     pub object: Object,
-    /// What it is made of, for each face group; see `material_of_face`.
+    /// What it is made of: the materials that its faces number (see [`Object::material_of`]). A number beyond the last
+    /// stands for the last.
     pub materials: Vec<Material>,
-    /// For each triangle of a mesh the position in `materials`; empty when there is one material.
-    pub material_of_face: Vec<u32>,
 }
 
 /// A scene that can't be built.
@@ -27,9 +26,9 @@ pub enum SceneError {
     /// Two objects of the same name.
     #[error("two objects are named `{0}`")]
     DuplicateName(String),
-    /// An object without a material, or whose faces name one that it does not have.
-    #[error("the object `{0}` names a material that it does not have")]
-    Material(String),
+    /// An object without a material.
+    #[error("the object `{0}` has no material")]
+    NoMaterial(String),
     /// More objects than 32-bit ids count.
     #[error("{0} objects are too many")]
     TooMany(usize),
@@ -41,8 +40,8 @@ pub struct Scene {
     aggregate: Aggregate,
     names: Vec<String>,
     materials: Vec<Material>,
-    /// For each object where its materials start, and its faces' materials if they differ.
-    assignments: Vec<Assignment>,
+    /// For each object where its materials start.
+    first_material: Vec<usize>,
     /// Objects that were left out because nothing can see them.
     invisible: Vec<String>,
     /// The camera.
@@ -57,18 +56,12 @@ pub struct Scene {
     pub medium: IndexOfRefraction,
 }
 
-#[derive(Clone, Debug)]
-struct Assignment {
-    first: u32,
-    of_face: Vec<u32>,
-}
-
 impl Scene {
     /// A scene of `objects`, seen by `camera`, dark and empty otherwise. Objects are sorted by name; those that nothing can see
     /// are left out. Lights that are dark are left out as well.
     ///
     /// # Errors
-    /// [`SceneError`] for duplicate names and materials that don't exist.
+    /// [`SceneError`] for duplicate names and objects without a material.
     pub fn new(mut objects: Vec<SceneObject>, camera: Camera) -> Result<Self, SceneError> {
         objects.sort_by(|a, b| a.name.cmp(&b.name));
         if let Some(pair) = objects.windows(2).find(|pair| pair[0].name == pair[1].name) {
@@ -77,20 +70,17 @@ impl Scene {
         if u32::try_from(objects.len()).is_err() {
             return Err(SceneError::TooMany(objects.len()));
         }
-        let is_assigned = |o: &SceneObject| {
-            !o.materials.is_empty() && o.material_of_face.iter().all(|&m| (m as usize) < o.materials.len())
-        };
-        if let Some(object) = objects.iter().find(|o| !is_assigned(o)) {
-            return Err(SceneError::Material(object.name.clone()));
+        if let Some(object) = objects.iter().find(|o| o.materials.is_empty()) {
+            return Err(SceneError::NoMaterial(object.name.clone()));
         }
         let (invisible, seen): (Vec<_>, Vec<_>) =
             objects.into_iter().partition(|o| o.materials.iter().all(Material::is_invisible));
         let mut materials = Vec::new();
-        let mut assignments = Vec::new();
+        let mut first_material = Vec::new();
         let mut names = Vec::new();
         let mut shapes = Vec::new();
         for object in seen {
-            assignments.push(Assignment { first: materials.len() as u32, of_face: object.material_of_face });
+            first_material.push(materials.len());
             materials.extend(object.materials);
             names.push(object.name);
             shapes.push(object.object);
@@ -99,7 +89,7 @@ impl Scene {
             aggregate: Aggregate::new(shapes),
             names,
             materials,
-            assignments,
+            first_material,
             invisible: invisible.into_iter().map(|o| o.name).collect(),
             camera,
             background: Background::Constant(Rgb::ZERO),
@@ -132,15 +122,16 @@ impl Scene {
     /// The material of a face of an object.
     #[inline]
     pub fn material(&self, object: u32, face: u32) -> &Material {
-        let assignment = &self.assignments[object as usize];
-        let of_face = assignment.of_face.get(face as usize).copied().unwrap_or(0);
-        &self.materials[(assignment.first + of_face) as usize]
+        let materials = self.materials_of(object);
+        let number = self.aggregate.objects()[object as usize].material_of(face) as usize;
+        &materials[number.min(materials.len() - 1)]
     }
 
-    /// The materials of an object.
+    /// The materials of an object, at least one.
+    #[inline]
     pub fn materials_of(&self, object: u32) -> &[Material] {
-        let start = self.assignments[object as usize].first as usize;
-        let end = self.assignments.get(object as usize + 1).map_or(self.materials.len(), |next| next.first as usize);
-        &self.materials[start..end]
+        let object = object as usize;
+        let end = self.first_material.get(object + 1).copied().unwrap_or(self.materials.len());
+        &self.materials[self.first_material[object]..end]
     }
 }

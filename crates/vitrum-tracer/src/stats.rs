@@ -68,7 +68,6 @@ impl Stats {
         self.deepest = self.deepest.max(other.deepest);
         self.normal_fallbacks += other.normal_fallbacks;
         self.geometry.contradictions += other.geometry.contradictions;
-        self.geometry.clamped += other.geometry.clamped;
         self.dropped += other.dropped;
         self.first_dropped = match (self.first_dropped, other.first_dropped) {
             (Some(a), Some(b)) => Some(a.min(b)),

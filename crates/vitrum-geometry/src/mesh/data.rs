@@ -21,4 +21,6 @@ pub struct MeshData {
     pub uvs: Vec<DVec2>,
     /// Texture coordinates of the corners of each triangle; empty or as long as `triangles`.
     pub uv_triangles: Vec<Triangle>,
+    /// Number of the material of each triangle; empty when all have the same.
+    pub materials: Vec<u32>,
 }

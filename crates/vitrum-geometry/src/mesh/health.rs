@@ -1,17 +1,18 @@
 //! Mesh health: is a triangle mesh the surface of a solid, and if not, what is wrong and where?
 //!
-//! Light inside glass has to come out again, so a mesh of solid glass must be *closed*: every edge has exactly two
-//! faces, and they run along it in opposite directions (Euler's and Möbius's rule for an oriented closed surface).
-//! [`health`] counts what breaks this and names the first place of each kind; [`mend`] repairs what can be repaired
-//! without guessing.
+//! Light inside glass has to come out again, so a mesh of solid glass must be *closed*: every edge has
+//! exactly two faces, and they run along it in opposite directions. [`health`] counts what breaks this and
+//! names the first place of each kind; [`mend`] repairs what can be repaired without guessing.
 //!
 //! Conventions:
-//! - Vertices are welded only where positions are *exactly* equal (-0 is +0), so that a file which repeats a vertex
-//!   for each normal or texture coordinate is still one surface. No tolerance anywhere: a crack is a crack.
-//! - Faces with an index out of range or a corner that is not finite, and faces that weld to an edge or a point,
-//!   belong to no edge and to no body. A face of three different but collinear corners does: it is what closes the
-//!   seam between one long edge and two short ones.
-//! - A *body* ([`Component`]) is a set of faces connected through edges. A face index counts in the mesh as given.
+//! - Vertices are welded only where positions are *exactly* equal (-0 is +0), so that a file which repeats a
+//!   vertex for each normal or texture coordinate is still one surface. No tolerance anywhere: a crack is a
+//!   crack.
+//! - Faces with an index out of range or a corner that is not finite, and faces that weld to an edge or a
+//!   point, belong to no edge and to no body. A face of three different but collinear corners does: it is
+//!   what closes the seam between one long edge and two short ones.
+//! - A *body* ([`Component`]) is a set of faces connected through edges. A face index counts in the mesh as
+//!   given.
 //! - Volumes are in cubed units of the mesh, positive when the faces wind anticlockwise seen from outside.
 //!
 //! Everything is done by sorting: n log n, and the same result everywhere.
@@ -46,7 +47,8 @@ pub enum Defect {
     DegenerateFace,
     /// A face with the corners and the winding of an earlier one.
     DuplicateFace,
-    /// A face with the corners of an earlier one and the opposite winding: a sheet with two sides and no inside.
+    /// A face with the corners of an earlier one and the opposite winding: a sheet with two sides and no
+    /// inside.
     DoubledFace,
     /// An edge of one face: the rim of a hole.
     OpenEdge,
@@ -54,7 +56,8 @@ pub enum Defect {
     NonManifoldEdge,
     /// An edge whose two faces run along it in the same direction: one of them is turned.
     ClashingEdge,
-    /// A closed body that encloses a negative volume and lies inside no other: its faces are turned inside out.
+    /// A closed body that encloses a negative volume and lies inside no other: its faces are turned inside
+    /// out.
     InsideOut,
 }
 
@@ -63,7 +66,8 @@ pub enum Defect {
 pub struct Place {
     /// The vertex ([`Defect::NonFiniteVertex`]) or the lowest face concerned.
     pub index: usize,
-    /// The vertex, the middle of the edge, or the centroid of the face. Not finite where the mesh has no such point.
+    /// The vertex, the middle of the edge, or the centroid of the face. Not finite where the mesh has no such
+    /// point.
     pub position: DVec3,
 }
 
@@ -93,8 +97,8 @@ pub struct Component {
     pub oriented: bool,
     /// Its faces could be turned so that none clash (a Möbius strip's cannot).
     pub orientable: bool,
-    /// Signed volume, summed about the centre of the bounding box; means something when `closed` and `oriented`.
-    /// Exactly 0 where the sum is no larger than its rounding error.
+    /// Signed volume, summed about the centre of the bounding box; means something when `closed` and
+    /// `oriented`. Exactly 0 where the sum is no larger than its rounding error.
     pub volume: f64,
     /// How many other closed bodies it lies inside; 0 for a body that is not closed.
     pub depth: usize,
@@ -167,7 +171,8 @@ impl Component {
 }
 
 impl Health {
-    /// Every edge has exactly two faces, in opposite directions, and every face is usable. An empty mesh is not closed.
+    /// Every edge has exactly two faces, in opposite directions, and every face is usable. An empty mesh is
+    /// not closed.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         let usable = self.unusable == 0 && self.count(Defect::IndexOutOfRange) == 0;
@@ -186,8 +191,8 @@ impl Health {
         self.findings.iter().find(|finding| finding.defect == defect)
     }
 
-    /// Volume enclosed by all bodies together, a bubble (a nested body of negative volume) subtracted; `None` unless
-    /// the mesh is closed.
+    /// Volume enclosed by all bodies together, a bubble (a nested body of negative volume) subtracted; `None`
+    /// unless the mesh is closed.
     #[must_use]
     pub fn volume(&self) -> Option<f64> {
         self.is_closed().then(|| self.components.iter().map(|body| body.volume).sum())

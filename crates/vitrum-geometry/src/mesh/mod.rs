@@ -6,6 +6,9 @@ mod normals;
 mod triangle;
 mod triangle_mesh;
 
+#[cfg(test)]
+mod tests;
+
 pub use data::{MeshData, Triangle};
 pub use health::{Component, Defect, Finding, Health, Mended, Place, Remedy, health, mend};
 pub use normals::{flat_normals, smooth_normals};

@@ -57,7 +57,8 @@ mod tests {
     fn a_cube_gets_diagonal_normals_whatever_its_diagonals() {
         let corner = |i: u32| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2 & 1));
         let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-        let triangles = quads.iter().flat_map(|q: &[u32; 4]| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]).collect();
+        let triangles =
+            quads.iter().flat_map(|q: &[u32; 4]| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]).collect();
         let cube = MeshData { positions: (0..8).map(corner).collect(), triangles, ..MeshData::default() };
         let smooth = smooth_normals(cube);
         for (triangle, normals) in smooth.triangles.iter().zip(&smooth.normal_triangles) {

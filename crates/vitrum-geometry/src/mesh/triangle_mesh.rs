@@ -1,9 +1,9 @@
 //! A triangle mesh in the form that rays are traced against.
 
-use super::triangle::{Settled, Sheared, settle};
-use super::{MeshData, health};
+use super::MeshData;
+use super::triangle::{Sheared, meet};
 use crate::aggregate::{Counters, Hit, Nearest};
-use crate::departure::Query;
+use crate::departure::{Departure, Query};
 use crate::tree::{BoxTree, FrameRay, UnitFrame};
 use std::ops::ControlFlow;
 use vitrum_math::{Bounds, DVec3, Ray, Vec3, gamma};
@@ -19,8 +19,9 @@ pub struct TriangleMesh {
     /// Corner normals for shading, unit length in the mesh's frame; empty for a mesh with flat faces.
     normals: Vec<Vec3>,
     normal_triangles: Vec<[u32; 3]>,
+    /// Number of the material of each triangle; empty when all have the same.
+    materials: Vec<u32>,
     tree: BoxTree,
-    closed: bool,
 }
 
 /// A mesh that can't be traced.
@@ -76,8 +77,11 @@ impl TriangleMesh {
         let in_range = |t: &[u32; 3], len: usize| t.iter().all(|&i| (i as usize) < len);
         let smooth = data.normal_triangles.len() == data.triangles.len();
         let bad_position = data.triangles.iter().position(|t| !in_range(t, data.positions.len()));
-        let bad_normal =
-            data.normal_triangles.iter().take_while(|_| smooth).position(|t| !in_range(t, data.normals.len()));
+        let bad_normal = data
+            .normal_triangles
+            .iter()
+            .take_while(|_| smooth)
+            .position(|t| !in_range(t, data.normals.len()));
         if let Some(triangle) = bad_position.or(bad_normal) {
             return Err(MeshError::Index { triangle });
         }
@@ -85,7 +89,7 @@ impl TriangleMesh {
         let used = data.triangles.iter().flatten().map(|&i| data.positions[i as usize]);
         let bounds = Bounds::around(used);
         let frame = UnitFrame::around(&bounds);
-        let vertices: Vec<Vec3> = data.positions.iter().map(|&p| frame.to_frame(p).as_vec3()).collect();
+        let vertices: Vec<Vec3> = data.positions.iter().map(|&p| frame.inward(p).as_vec3()).collect();
         // A triangle without area in the rounded frame can't be hit; its neighbours close the surface.
         let has_area = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|i| vertices[i as usize].as_dvec3());
@@ -96,14 +100,23 @@ impl TriangleMesh {
             return Err(MeshError::Empty);
         }
         let triangles: Vec<[u32; 3]> = kept.iter().map(|&i| data.triangles[i]).collect();
-        let normal_triangles = if smooth { kept.iter().map(|&i| data.normal_triangles[i]).collect() } else { vec![] };
-        let normals = if smooth { data.normals.iter().map(|n| n.normalize_or_zero().as_vec3()).collect() } else { vec![] };
+        let normal_triangles =
+            if smooth { kept.iter().map(|&i| data.normal_triangles[i]).collect() } else { vec![] };
+        let normals = if smooth {
+            data.normals.iter().map(|n| n.normalize_or_zero().as_vec3()).collect()
+        } else {
+            vec![]
+        };
         let tree = BoxTree::build(triangles.iter().map(|t| {
             let [a, b, c] = t.map(|i| vertices[i as usize]);
             (a.min(b).min(c), a.max(b).max(c))
         }));
-        let closed = health(data).is_closed();
-        Ok(Self { frame, bounds, vertices, triangles, normals, normal_triangles, tree, closed })
+        let materials = if data.materials.len() == data.triangles.len() {
+            kept.iter().map(|&i| data.materials[i]).collect()
+        } else {
+            vec![]
+        };
+        Ok(Self { frame, bounds, vertices, triangles, normals, normal_triangles, materials, tree })
     }
 
     /// The box around it, in its own units.
@@ -116,9 +129,10 @@ impl TriangleMesh {
         self.triangles.len()
     }
 
-    /// True when every edge joins exactly two faces with opposite directions: the mesh has an inside.
-    pub fn is_closed(&self) -> bool {
-        self.closed
+    /// The number of the material of a triangle; 0 when all have the same.
+    #[inline]
+    pub fn material(&self, face: u32) -> u32 {
+        self.materials.get(face as usize).copied().unwrap_or(0)
     }
 
     /// True when its normals are interpolated.
@@ -132,6 +146,7 @@ impl TriangleMesh {
             + size_of_val(&*self.triangles)
             + size_of_val(&*self.normals)
             + size_of_val(&*self.normal_triangles)
+            + size_of_val(&*self.materials)
             + self.tree.memory()
     }
 
@@ -142,7 +157,14 @@ impl TriangleMesh {
 
     /// Offers the first triangle that counts, if it is nearer than what was found before.
     #[inline]
-    pub(crate) fn closest(&self, ray: &Ray, query: &Query, object: u32, nearest: &mut Nearest, counters: &mut Counters) {
+    pub(crate) fn closest(
+        &self,
+        ray: &Ray,
+        query: &Query,
+        object: u32,
+        nearest: &mut Nearest,
+        counters: &mut Counters,
+    ) {
         let Some(ray) = self.frame.enter(ray, nearest.limit()) else { return };
         let sheared = Sheared::new(ray.origin, ray.direction);
         let limit = ray.box_limit(nearest.limit());
@@ -158,7 +180,14 @@ impl TriangleMesh {
 
     /// True when some triangle counts and lies nearer than `limit`.
     #[inline]
-    pub(crate) fn any(&self, ray: &Ray, query: &Query, object: u32, limit: f64, counters: &mut Counters) -> bool {
+    pub(crate) fn any(
+        &self,
+        ray: &Ray,
+        query: &Query,
+        object: u32,
+        limit: f64,
+        counters: &mut Counters,
+    ) -> bool {
         let Some(ray) = self.frame.enter(ray, limit) else { return false };
         let sheared = Sheared::new(ray.origin, ray.direction);
         let mut found = false;
@@ -186,7 +215,7 @@ impl TriangleMesh {
         }
     }
 
-    /// Tests one triangle, settles it in double precision, and asks whether it counts.
+    /// Tests one triangle, in double precision if it may be met, and asks whether it counts.
     #[inline]
     fn candidate(
         &self,
@@ -198,38 +227,48 @@ impl TriangleMesh {
         counters: &mut Counters,
     ) -> Option<Hit> {
         let corners = self.corners(face);
-        let found = sheared.test(&corners)?;
+        if !sheared.may_meet(&corners) {
+            return None;
+        }
         let departed = query.departed_from(object);
         if departed.is_some_and(|d| d.face == face) {
             return None;
         }
         let corners = corners.map(|c| c.as_dvec3());
-        let Settled { t: frame_t, barycentrics, clamped } = settle(&ray.exact, &corners, found);
-        let t = frame_t / ray.t_scale;
-        // A neighbour within the rounding error of the origin: behind it by that error still counts as at the origin, unless
-        // its sense contradicts the departure.
-        let t = if let Some(departed) = departed {
+        let met = meet(&ray.exact, &corners)?;
+        let mut t = met.t / ray.t_scale;
+        if let Some(departed) = departed {
+            // A neighbour within the rounding error of the origin. Whether it seems to lie before or behind says nothing.
             let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
             let along = ray.exact.direction.dot(normal);
-            let distance = (frame_t * along).abs() / normal.dot(normal).sqrt();
+            let distance = (met.t * along).abs() / normal.dot(normal).sqrt();
             if distance <= departed.error {
-                let entering = along < 0.0;
-                if entering == departed.behind {
-                    counters.contradictions += u64::from(t >= 0.0);
+                if !self.goes_through_neighbour(departed, ray.exact.origin, &corners, along < 0.0) {
+                    counters.contradictions += 1;
                     return None;
                 }
-                t.max(0.0)
-            } else {
-                t
+                t = t.max(0.0);
             }
-        } else {
-            t
-        };
-        if !query.admits(t, object, face) {
-            return None;
         }
-        counters.clamped += u64::from(clamped);
-        Some(Hit { t, object, face, barycentrics: [barycentrics[1], barycentrics[2]] })
+        query.admits(t, object, face).then_some(Hit { t, object, face, barycentrics: met.barycentrics })
+    }
+
+    /// Whether a ray that leaves a face from a point on its edge really crosses the face beyond the edge.
+    ///
+    /// Where the two faces meet like those of a convex solid, only a ray that is inside can cross the neighbour, on its way
+    /// out; where they meet like the walls of a corner, only one that is outside, on its way in. Anything else is the rounding
+    /// of the origin.
+    fn goes_through_neighbour(
+        &self,
+        left: &Departure,
+        origin: DVec3,
+        corners: &[DVec3; 3],
+        entering: bool,
+    ) -> bool {
+        let [a, b, c] = self.corners(left.face).map(|c| c.as_dvec3());
+        let towards_neighbour = corners[0] + corners[1] + corners[2] - origin * 3.0;
+        let convex = (b - a).cross(c - a).dot(towards_neighbour) < 0.0;
+        if left.behind { convex && !entering } else { !convex && entering }
     }
 
     /// The point of `face` with the given weights of its second and third corner.
@@ -239,12 +278,13 @@ impl TriangleMesh {
         let p = v0 * weights[0] + v1 * weights[1] + v2 * weights[2];
         let normal = (v1 - v0).cross(v2 - v0);
         let ns = if self.is_smooth() {
-            let [n0, n1, n2] = self.normal_triangles[face as usize].map(|i| self.normals[i as usize].as_dvec3());
+            let [n0, n1, n2] =
+                self.normal_triangles[face as usize].map(|i| self.normals[i as usize].as_dvec3());
             n0 * weights[0] + n1 * weights[1] + n2 * weights[2]
         } else {
             DVec3::ZERO
         };
-        let point = self.frame.from_frame(p);
+        let point = self.frame.outward(p);
         // Interpolation rounds five times on coordinates of at most one half; then the frame's centre is added.
         let error = gamma(6) / self.frame.scale() + gamma(1) * point.abs().max_element();
         MeshPoint { point, ng: normal / normal.dot(normal).sqrt(), ns, error }

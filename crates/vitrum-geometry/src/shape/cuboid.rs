@@ -51,7 +51,8 @@ impl Cuboid {
                 continue;
             }
             let (t_low, t_high) = ((self.min[axis] - o) / d, (self.max[axis] - o) / d);
-            let (enter, exit) = if d > 0.0 { ((t_low, low), (t_high, high)) } else { ((t_high, high), (t_low, low)) };
+            let (enter, exit) =
+                if d > 0.0 { ((t_low, low), (t_high, high)) } else { ((t_high, high), (t_low, low)) };
             if enter.0 > near.t {
                 near = Crossing { t: enter.0, face: enter.1 };
             }

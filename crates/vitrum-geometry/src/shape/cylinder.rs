@@ -38,11 +38,6 @@ impl Cylinder {
         Ok(Self { bottom, axis, height: (top - bottom).length(), radius: radius(r)?, capped })
     }
 
-    /// True for a solid.
-    pub const fn is_capped(&self) -> bool {
-        self.capped
-    }
-
     pub(crate) fn bounds(&self) -> Bounds {
         let half = (DVec3::ONE - self.axis * self.axis).max(DVec3::ZERO);
         let half = DVec3::new(half.x.sqrt(), half.y.sqrt(), half.z.sqrt()) * self.radius;
@@ -58,7 +53,7 @@ impl Cylinder {
             // An open tube seen from outside, or a solid that is left: no way back, since both are convex.
             Some(Leaving { behind: false, .. }) => Crossings::NONE,
             Some(leaving) => self.next_inside(ray, leaving.face),
-            None => self.from_outside(ray),
+            None => self.along_line(ray),
         }
     }
 
@@ -90,10 +85,8 @@ impl Cylinder {
     fn slab(&self, ray: &Ray) -> Option<(Crossing, Crossing)> {
         let (height, climb) = (self.axis.dot(ray.origin - self.bottom), self.axis.dot(ray.direction));
         if climb == 0.0 {
-            let everywhere = (
-                Crossing { t: f64::NEG_INFINITY, face: BOTTOM },
-                Crossing { t: f64::INFINITY, face: TOP },
-            );
+            let everywhere =
+                (Crossing { t: f64::NEG_INFINITY, face: BOTTOM }, Crossing { t: f64::INFINITY, face: TOP });
             return (0.0..=self.height).contains(&height).then_some(everywhere);
         }
         let bottom = Crossing { t: -height / climb, face: BOTTOM };
@@ -102,8 +95,9 @@ impl Cylinder {
     }
 
     #[inline]
-    fn from_outside(&self, ray: &Ray) -> Crossings {
-        let (Some((wall_near, wall_far)), Some((slab_near, slab_far))) = (self.wall(ray), self.slab(ray)) else {
+    fn along_line(&self, ray: &Ray) -> Crossings {
+        let (Some((wall_near, wall_far)), Some((slab_near, slab_far))) = (self.wall(ray), self.slab(ray))
+        else {
             return Crossings::NONE;
         };
         let wall = |t: f64| Crossing { t, face: WALL };
@@ -138,7 +132,8 @@ impl Cylinder {
         };
         let climb = self.axis.dot(ray.direction);
         let height = self.axis.dot(offset);
-        let (cap_t, cap) = if climb > 0.0 { ((self.height - height) / climb, TOP) } else { (-height / climb, BOTTOM) };
+        let (cap_t, cap) =
+            if climb > 0.0 { ((self.height - height) / climb, TOP) } else { (-height / climb, BOTTOM) };
         let reaches_cap = climb != 0.0 && cap_t < wall_t;
         match (self.capped, reaches_cap) {
             // The face that is left can't be met again, even if rounding points a grazing ray at it.

@@ -23,7 +23,11 @@ impl Disk {
     /// # Errors
     /// [`ShapeError`] for parameters that are not finite, a zero normal or a radius that is not positive.
     pub fn new(centre: DVec3, normal: DVec3, r: f64) -> Result<Self, ShapeError> {
-        Ok(Self { centre: finite(centre, "centre")?, normal: direction(normal, "normal")?, radius: radius(r)? })
+        Ok(Self {
+            centre: finite(centre, "centre")?,
+            normal: direction(normal, "normal")?,
+            radius: radius(r)?,
+        })
     }
 
     pub(crate) fn bounds(&self) -> Bounds {
@@ -39,7 +43,11 @@ impl Disk {
         match plane_distance(ray, self.centre, self.normal) {
             Some(t) if leaving.is_none() => {
                 let offset = self.surface_point(ray, t).point - self.centre;
-                if offset.dot(offset) <= self.radius * self.radius { Crossings::one(t, 0) } else { Crossings::NONE }
+                if offset.dot(offset) <= self.radius * self.radius {
+                    Crossings::one(t, 0)
+                } else {
+                    Crossings::NONE
+                }
             }
             _ => Crossings::NONE,
         }
@@ -63,6 +71,9 @@ mod tests {
         let down = |x: f64| disk.crossings(&Ray::new(DVec3::new(x, 3.0, 0.0), -DVec3::Y), None);
         assert_eq!(down(1.999), Crossings::one(2.0, 0));
         assert_eq!(down(2.001), Crossings::NONE);
-        assert_eq!(disk.bounds(), Bounds { min: DVec3::new(-2.0, 1.0, -2.0), max: DVec3::new(2.0, 1.0, 2.0) });
+        assert_eq!(
+            disk.bounds(),
+            Bounds { min: DVec3::new(-2.0, 1.0, -2.0), max: DVec3::new(2.0, 1.0, 2.0) }
+        );
     }
 }

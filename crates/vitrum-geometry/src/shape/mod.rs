@@ -80,16 +80,6 @@ impl Shape {
         }
     }
 
-    /// True when the shape encloses a volume: it has an inside.
-    pub fn is_solid(&self) -> bool {
-        match self {
-            Self::Sphere(_) | Self::Cuboid(_) => true,
-            Self::Cylinder(s) => s.is_capped(),
-            Self::Plane(_) | Self::Disk(_) | Self::Rectangle(_) => false,
-            Self::Mesh(s) => s.is_closed(),
-        }
-    }
-
     /// Its name in scene files.
     pub fn name(&self) -> &'static str {
         match self {

@@ -82,7 +82,8 @@ mod tests {
 
     #[test]
     fn skewed_edges_bound_it() {
-        let r = Rectangle::new(DVec3::ZERO, DVec3::new(2.0, 0.0, 0.0), DVec3::new(1.0, 1.0, 0.0)).expect("valid");
+        let r =
+            Rectangle::new(DVec3::ZERO, DVec3::new(2.0, 0.0, 0.0), DVec3::new(1.0, 1.0, 0.0)).expect("valid");
         let at = |x: f64, y: f64| r.crossings(&Ray::new(DVec3::new(x, y, 1.0), -DVec3::Z), None);
         assert_eq!(at(1.5, 0.5), Crossings::one(1.0, 0));
         assert_eq!(at(0.4, 0.5), Crossings::NONE, "left of the slanted edge");

@@ -49,8 +49,8 @@ pub enum ObjError {
     },
     /// Nothing in the file has a surface.
     #[error(
-        "{}: there are no faces to render ({vertices} vertices, {points} points, {lines} lines, {short_faces} faces \
-         with fewer than three corners); export the model as a mesh", path.display()
+        "{}: there are no faces to render (vertices: {vertices}, points: {points}, lines: {lines}, faces with fewer \
+         than three corners: {short_faces}); export the model as a mesh", path.display()
     )]
     NoFaces {
         /// The file.
@@ -78,7 +78,7 @@ pub enum ObjError {
     },
     /// A face names a vertex that is not in the file.
     #[error(
-        "{}:{line}: a face names vertex {index}, but the file has {count} vertices, counted from 1 (or back from -1); \
+        "{}:{line}: a face names vertex {index}, but the vertices end at {count} (they count from 1, or back from -1); \
          the file may be cut off or damaged: export it again", path.display()
     )]
     IndexOutOfRange {
@@ -93,7 +93,7 @@ pub enum ObjError {
     },
     /// Some vertices have coordinates that are infinite or not a number.
     #[error(
-        "{}:{line}: the file has {count} vertices that are not finite, the first is {found}; \
+        "{}:{line}: vertices that are not finite: {count}, the first is {found}; \
          repair the model or export it again", path.display()
     )]
     NotFinite {

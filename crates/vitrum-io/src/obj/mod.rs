@@ -11,7 +11,7 @@
 //!   that does not exist or is not finite, a number that is none) refuses the file: [`ObjError`].
 //! - Materials: the table in `material.rs`. A missing library is a warning.
 //!
-//! Limits: 4 GiB per file, 2^15 corners per face, 64 libraries of at most 16 MiB. Memory: up to about fifteen times
+//! Limits: 4 GiB per file, 2^14 corners per face, 64 libraries of at most 16 MiB. Memory: up to about fifteen times
 //! the size of the file while it is read.
 //!
 //! Sources: Alias Wavefront, Advanced Visualizer manual, appendix B1, Object files, 1995; read with the crate `tobj`.
@@ -212,12 +212,12 @@ fn load_libraries(
     }
     if names.len() > MOST_LIBRARIES {
         warnings
-            .push(format!("{} material libraries are named; only {MOST_LIBRARIES} are read", names.len()));
+            .push(format!("material libraries after the first {MOST_LIBRARIES}, not read: {}", names.len()));
     }
     if let Some(first) = redefined.first() {
         let count = redefined.len();
         warnings.push(format!(
-            "{count} materials are defined again (first `{first}`); the last definition counts"
+            "materials defined again, of which the last definition counts: {count} (first `{first}`)"
         ));
     }
     materials
@@ -235,7 +235,7 @@ fn find_materials(scan: &Scan, materials: &mut Vec<MtlMaterial>, warnings: &mut 
             return at;
         }
         if undefined == 0 {
-            first_undefined = format!("`{name}`, line {line}");
+            first_undefined = format!("`{name}` at line {line}");
         }
         undefined += 1;
         materials.push(MtlMaterial::undefined(name));
@@ -244,7 +244,7 @@ fn find_materials(scan: &Scan, materials: &mut Vec<MtlMaterial>, warnings: &mut 
     let found = found.collect();
     if undefined > 0 {
         warnings.push(format!(
-            "{undefined} materials are used but not defined (first {first_undefined}); they are plain grey"
+            "materials used but not defined, taken as plain grey: {undefined} (first {first_undefined})"
         ));
     }
     found
@@ -256,29 +256,27 @@ fn say_what_was_passed_over(scan: &Scan, assembly: &Assembly, warnings: &mut Vec
     let mut say = |tally: &Tally, what: &str| {
         let Tally { count, first_line } = tally;
         if *count > 0 {
-            warnings.push(format!("{count} {what} (first at line {first_line})"));
+            warnings.push(format!("{what}: {count} (first at line {first_line})"));
         }
     };
-    say(&tallies.points, "point elements (p) are left out: only faces are rendered");
-    say(&tallies.lines, "line elements (l) are left out: only faces are rendered");
-    say(&tallies.short_faces, "faces have fewer than three corners and are left out");
-    say(&tallies.colours, "vertices have more than four numbers (vertex colours); the rest is not used");
-    say(&tallies.missing_uvs, "faces name texture coordinates that do not exist; they go without");
-    say(&tallies.missing_normals, "faces name normals that do not exist; they go without");
-    say(&tallies.unusable_uvs, "texture coordinates are not finite; 0 is taken");
-    say(&tallies.unusable_normals, "normals are zero or not finite; the face's own normal is taken");
-    let unknown = format!("statements are not known and passed over, such as {}", tallies.first_unknown);
+    say(&tallies.points, "point elements (p) left out, for only faces are rendered");
+    say(&tallies.lines, "line elements (l) left out, for only faces are rendered");
+    say(&tallies.short_faces, "faces with fewer than three corners left out");
+    say(&tallies.colours, "vertices with more than four numbers (vertex colours), of which three are used");
+    say(&tallies.missing_uvs, "faces that name texture coordinates which do not exist, and go without");
+    say(&tallies.missing_normals, "faces that name normals which do not exist, and go without");
+    say(&tallies.unusable_uvs, "texture coordinates that are not finite, taken as 0");
+    say(&tallies.unusable_normals, "normals that are zero or not finite, replaced by those of their faces");
+    let unknown = format!("statements passed over, such as {}", tallies.first_unknown);
     say(&tallies.unknown, &unknown);
     if assembly.flat_faces > 0 {
         let count = assembly.flat_faces;
-        warnings.push(format!(
-            "{count} faces have no normals though others have; the face's own normal is taken"
-        ));
+        warnings.push(format!("faces without normals in parts where others have some, shaded flat: {count}"));
     }
     if assembly.guessed_faces > 0 {
         let count = assembly.guessed_faces;
         warnings.push(format!(
-            "{count} faces cross themselves or have no area; how they are cut into triangles is a guess"
+            "faces that cross themselves or have no area, cut into triangles by a guess: {count}"
         ));
     }
 }

@@ -30,7 +30,7 @@ pub(super) fn parse(name: &str, bytes: &[u8]) -> (Vec<MtlMaterial>, Vec<String>)
             if problems == 0 {
                 let (keyword, found) = (lines::readable(keyword), lines::quoted(rest));
                 first_problem =
-                    format!("line {}: {keyword}: found {found}, expected {expected}", statement.line);
+                    format!("line {}, {keyword}: found {found}, expected {expected}", statement.line);
             }
             problems += 1;
         }
@@ -38,11 +38,11 @@ pub(super) fn parse(name: &str, bytes: &[u8]) -> (Vec<MtlMaterial>, Vec<String>)
     let mut warnings = Vec::new();
     if problems > 0 {
         warnings.push(format!(
-            "material library `{name}`: {problems} statements make no sense and are passed over ({first_problem})"
+            "material library `{name}`: statements that make no sense, passed over: {problems} (first at {first_problem})"
         ));
     }
     if maps > 0 {
-        warnings.push(format!("material library `{name}`: {maps} texture maps are not used"));
+        warnings.push(format!("material library `{name}`: texture maps not used: {maps}"));
     }
     (materials, warnings)
 }
@@ -139,7 +139,7 @@ mod tests {
         assert_eq!(materials[0].kd, Some(Rgb::splat(0.5)));
         assert_eq!((materials[0].ni, materials[0].d, materials[0].illum), (None, None, None));
         assert_eq!(warnings.len(), 2);
-        assert!(warnings[0].contains("8 statements") && warnings[0].contains("line 2: Kd: found `1 2`"));
-        assert!(warnings[1].contains("1 texture maps"));
+        assert!(warnings[0].contains("passed over: 8 (first at line 2, Kd: found `1 2`, expected"));
+        assert!(warnings[1].contains("texture maps not used: 1"));
     }
 }

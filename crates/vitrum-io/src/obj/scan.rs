@@ -17,7 +17,7 @@ use super::ObjError;
 use super::lines::{self, Statement};
 
 /// Faces with more corners are refused: cutting one into triangles takes time with the square of their number.
-pub(super) const MOST_CORNERS: usize = 1 << 15;
+pub(super) const MOST_CORNERS: usize = 1 << 14;
 
 /// Faces in file order that agree in everything but their corners; the next run begins where one ends.
 #[derive(Clone, Debug, PartialEq)]

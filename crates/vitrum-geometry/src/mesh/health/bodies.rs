@@ -1,8 +1,8 @@
 //! Bodies: the faces connected through edges, and how their windings relate.
 //!
-//! One union-find over faces answers both. Each face remembers whether its winding agrees with that of its parent,
-//! so that along any path of edges the agreement of two faces is known; a cycle that contradicts itself is a surface
-//! without two sides.
+//! One union-find over faces answers both. Each face remembers whether its winding agrees with that of its
+//! parent, so that along any path of edges the agreement of two faces is known; a cycle that contradicts
+//! itself is a surface without two sides.
 
 use glam::DVec3;
 
@@ -77,7 +77,8 @@ impl Bodies {
             }
         }
         for body in &mut bodies.components {
-            // What the sum can have lost: a product of three lengths for each face. A sheet's two sides cancel to that.
+            // What the sum can have lost: a product of three lengths for each face. A sheet's two sides
+            // cancel to that.
             let (low, high) = body.bounds;
             let rounding = body.triangles as f64 * f64::EPSILON * (high - low).length().powi(3);
             if body.volume.abs() <= rounding {
@@ -148,7 +149,8 @@ impl Windings {
         (self.parent[at], turned)
     }
 
-    /// Joins the sets of two faces. `binding`: `turned` is a fact about the two; if not, it is only a default.
+    /// Joins the sets of two faces. `binding`: `turned` is a fact about the two; if not, it is only a
+    /// default.
     fn join(&mut self, a: u32, b: u32, turned: bool, binding: bool) {
         let ((root_a, turned_a), (root_b, turned_b)) = (self.find(a), self.find(b));
         let relation = turned ^ turned_a ^ turned_b;

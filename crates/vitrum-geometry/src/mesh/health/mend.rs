@@ -1,15 +1,16 @@
 //! Repairs that need no guess.
 //!
-//! - Faces that weld to an edge or a point are dropped, and faces that repeat an earlier one with the same winding.
-//!   A face of three different collinear corners is dropped only if that leaves no more bad edges than before: in a
-//!   closed surface it closes a seam, and no ray hits it anyway.
+//! - Faces that weld to an edge or a point are dropped, and faces that repeat an earlier one with the same
+//!   winding. A face of three different collinear corners is dropped only if that leaves no more bad edges
+//!   than before: in a closed surface it closes a seam, and no ray hits it anyway.
 //! - In a closed body whose faces clash, faces are turned until none do, if that is possible.
-//! - A closed body that lies in no other and encloses a negative volume is turned outward. If bodies inside it
-//!   alternate as in a mirrored model (a bubble turned outward in a solid turned inward), they turn with it.
+//! - A closed body that lies in no other and encloses a negative volume is turned outward. If bodies inside
+//!   it alternate as in a mirrored model (a bubble turned outward in a solid turned inward), they turn with
+//!   it.
 //! - A body inside another may be a bubble: it is left as it is otherwise, and said.
 //!
-//! Where a face is turned, normals that agreed with it before agree with it after. Corners that are not finite, holes
-//! and non-manifold edges stay. A mesh that has an index out of range comes back untouched.
+//! Where a face is turned, normals that agreed with it before agree with it after. Corners that are not
+//! finite, holes and non-manifold edges stay. A mesh that has an index out of range comes back untouched.
 
 use std::{collections::BTreeMap, fmt};
 
@@ -50,8 +51,8 @@ pub struct Mended {
     pub first: Place,
 }
 
-/// Mends a mesh and says how: drops, then turns. A healthy mesh comes back as it was, with an empty list. Unless
-/// faces were dropped, every face keeps its number; see [`Mended::triangles`].
+/// Mends a mesh and says how: drops, then turns. A healthy mesh comes back as it was, with an empty list.
+/// Unless faces were dropped, every face keeps its number; see [`Mended::triangles`].
 #[must_use]
 pub fn mend(data: MeshData) -> (MeshData, Vec<Mended>) {
     let mut report = Vec::new();
@@ -99,6 +100,8 @@ fn drop_faces(mut data: MeshData, report: &mut Vec<Mended>) -> (MeshData, Vec<us
             let mut dropped = dropped.iter();
             triangles.retain(|_| dropped.next() != Some(&true));
         }
+        let mut dropped = dropped.iter();
+        data.materials.retain(|_| dropped.next() != Some(&true));
     }
     (data, kept)
 }
@@ -210,7 +213,8 @@ fn judge(surface: &Surface<'_>, bodies: &Bodies, faces: &[Vec<usize>]) -> Vec<Ve
     verdicts
 }
 
-/// Whether a body has the sign that its depth has in a mirrored model: solids negative, their bubbles positive.
+/// Whether a body has the sign that its depth has in a mirrored model: solids negative, their bubbles
+/// positive.
 fn mirrored(body: &Component) -> bool {
     body.depth.is_multiple_of(2) == (body.volume < 0.0)
 }

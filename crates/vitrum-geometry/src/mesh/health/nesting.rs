@@ -1,9 +1,10 @@
 //! Which body lies inside which: a bubble is a body inside another.
 //!
-//! A point is inside a closed surface when a ray from it crosses the surface an odd number of times. The ray runs
-//! along +x. The plane y = constant through the point cuts every closed surface in closed polygons whose corners lie
-//! on edges of the mesh; each corner is computed from its edge alone, the same for both faces, so no ray slips
-//! between two faces, and with half-open comparisons none counts a vertex twice. Parity does not care about winding.
+//! A point is inside a closed surface when a ray from it crosses the surface an odd number of times. The ray
+//! runs along +x. The plane y = constant through the point cuts every closed surface in closed polygons whose
+//! corners lie on edges of the mesh; each corner is computed from its edge alone, the same for both faces, so
+//! no ray slips between two faces, and with half-open comparisons none counts a vertex twice. Parity does not
+//! care about winding.
 
 use glam::DVec3;
 
@@ -16,6 +17,13 @@ struct Sample {
     body: usize,
     /// Which of the body's samples.
     number: usize,
+}
+
+/// Samples of neighbouring y, ordered by z.
+struct Block {
+    low_y: f64,
+    high_y: f64,
+    samples: Vec<Sample>,
 }
 
 /// Points taken from each body; it lies inside another when most of its points do.
@@ -36,7 +44,7 @@ pub(super) fn containers(surface: &Surface<'_>, bodies: &Bodies) -> Vec<Vec<usiz
             samples.push(Sample { point: (a + b + c) / 3.0, body, number });
         }
     }
-    samples.sort_by(|a, b| a.point.y.total_cmp(&b.point.y));
+    let blocks = blocks(samples);
 
     let mut crossings = Vec::new();
     for (face, body) in bodies.of_face.iter().enumerate() {
@@ -44,12 +52,15 @@ pub(super) fn containers(surface: &Surface<'_>, bodies: &Bodies) -> Vec<Vec<usiz
         let points = surface.points(face);
         let low = points[0].min(points[1]).min(points[2]);
         let high = points[0].max(points[1]).max(points[2]);
-        let start = samples.partition_point(|sample| sample.point.y < low.y);
-        for sample in samples[start..].iter().take_while(|sample| sample.point.y < high.y) {
-            let DVec3 { x, z, .. } = sample.point;
-            let beside = z < low.z || z >= high.z || x > high.x;
-            if !beside && sample.body != body && crosses(surface, face, sample.point) {
-                crossings.push((sample.body, body, sample.number));
+        let first = blocks.partition_point(|block| block.high_y < low.y);
+        for block in blocks[first..].iter().take_while(|block| block.low_y < high.y) {
+            let first = block.samples.partition_point(|sample| sample.point.z < low.z);
+            for sample in block.samples[first..].iter().take_while(|sample| sample.point.z < high.z) {
+                let DVec3 { x, y, .. } = sample.point;
+                let beside = y < low.y || y >= high.y || x > high.x;
+                if !beside && sample.body != body && crosses(surface, face, sample.point) {
+                    crossings.push((sample.body, body, sample.number));
+                }
             }
         }
     }
@@ -63,6 +74,18 @@ pub(super) fn containers(surface: &Surface<'_>, bodies: &Bodies) -> Vec<Vec<usiz
         }
     }
     containers
+}
+
+/// Divides the samples by y into about as many blocks as each has samples, and orders those by z: what lies in the
+/// (y, z) rectangle of a face is then found without a look at most of the others.
+fn blocks(mut samples: Vec<Sample>) -> Vec<Block> {
+    samples.sort_by(|a, b| a.point.y.total_cmp(&b.point.y));
+    let block = |by_y: &[Sample]| {
+        let mut samples = by_y.to_vec();
+        samples.sort_by(|a, b| a.point.z.total_cmp(&b.point.z));
+        Block { low_y: by_y[0].point.y, high_y: by_y[by_y.len() - 1].point.y, samples }
+    };
+    samples.chunks(samples.len().isqrt().max(1)).map(block).collect()
 }
 
 /// Whether the ray along +x from a point crosses a face.

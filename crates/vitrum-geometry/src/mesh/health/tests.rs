@@ -169,7 +169,8 @@ fn faces_without_area_are_dropped() {
 
 #[test]
 fn a_flat_face_stays_where_it_closes_a_seam() {
-    // The edge from 0 to 1 of a cube, halved on one side only: vertex 8 in its middle, and a flat face in the seam.
+    // The edge from 0 to 1 of a cube, halved on one side only: vertex 8 in its middle, and a flat face in the
+    // seam.
     let mut mesh = unit_cube();
     mesh.positions.push((mesh.positions[0] + mesh.positions[1]) / 2.0);
     let split = mesh.triangles.iter().position(|triangle| *triangle == [0, 1, 5]).unwrap();
@@ -393,7 +394,8 @@ fn extruded(outline: &[(f64, f64)], height: f64) -> MeshData {
 
 #[test]
 fn rays_through_vertices_and_edges_count_once() {
-    // The samples of the inner cubes lie level with corners and edges of the outer octahedron along every axis.
+    // The samples of the inner cubes lie level with corners and edges of the outer octahedron along every
+    // axis.
     let octahedron = MeshData {
         positions: vec![DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y, DVec3::Z, -DVec3::Z],
         triangles: vec![

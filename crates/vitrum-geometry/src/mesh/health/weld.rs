@@ -1,5 +1,5 @@
-//! Welding of vertices whose positions are exactly equal, by sorting. -0 is +0; a position that is not finite welds
-//! to nothing that matters, because faces that use it are left out.
+//! Welding of vertices whose positions are exactly equal, by sorting. -0 is +0; a position that is not finite
+//! welds to nothing that matters, because faces that use it are left out.
 
 use glam::DVec3;
 

@@ -54,7 +54,7 @@ pub enum Tone {
     /// They are white.
     Clip,
     /// They are rolled off.
-    Filmic,
+    Neutral,
 }
 
 /// Where the scene is seen from.

@@ -36,13 +36,13 @@ impl<'s> Context<'s> {
         }
     }
 
-    /// Whether `span` stands in a broken statement.
+    /// Whether `span` meets a broken statement.
     fn is_lost(&self, span: Span) -> bool {
         let next = self.broken.partition_point(|broken| broken.start <= span.end);
         self.broken[..next].last().is_some_and(|broken| broken.touches(span))
     }
 
-    /// Tells a problem of the syntax, or one of something missing when the whole file could be read.
+    /// Tells a problem whatever else is wrong.
     pub(super) fn report_anyway(&mut self, problem: Problem) {
         // Finding a place costs time; a file with a million problems is not worth it.
         if self.diagnostics.is_full(problem.severity) {
@@ -52,9 +52,14 @@ impl<'s> Context<'s> {
         }
     }
 
-    /// Tells that something is missing, unless it may have been lost.
+    /// Tells that a key is missing, unless it may have been lost: from the same table, or from the whole file if the
+    /// problem has no place.
     pub(super) fn report_missing(&mut self, problem: Problem) {
-        if self.broken.is_empty() {
+        let lost = match problem.span {
+            Some(span) if !self.broken.is_empty() => self.is_lost(self.source.up_to_next_header(span)),
+            _ => !self.broken.is_empty(),
+        };
+        if !lost {
             self.report_anyway(problem);
         }
     }

@@ -6,7 +6,7 @@ use toml::de::{DeTable, DeValue};
 use super::super::schema::{Default, Key, Kind, TABLES, Table, Variant, one_of};
 use super::context::shorten;
 use super::{Context, Problem, suggest, value};
-use crate::diagnostic::Span;
+use crate::diagnostic::{Severity, Span};
 
 /// A table being read: opened against its schema, asked for every key of it by name, then closed.
 pub(super) struct Fields<'f, 's> {
@@ -174,6 +174,11 @@ impl<'f, 's> Fields<'f, 's> {
         };
         let unknown: Vec<_> = self.table.keys().filter(|key| !known(key.get_ref())).collect();
         for key in unknown {
+            // Suggestions take time, and nobody would read them.
+            if self.cx.diagnostics.is_full(Severity::Error) {
+                self.cx.diagnostics.omit();
+                continue;
+            }
             let (problem, near) = self.unknown(key.get_ref(), key.span().into());
             self.cx.report(problem);
             self.misspelt.extend(near);

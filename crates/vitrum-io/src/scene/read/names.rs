@@ -35,6 +35,10 @@ fn define(cx: &mut Context<'_>, realm: Realm, name: &Name) {
 
 /// Tells the references to what does not exist.
 pub(super) fn resolve(cx: &mut Context<'_>) {
+    if !cx.broken.is_empty() {
+        // The name may stand in what could not be read.
+        return;
+    }
     for (realm, name) in std::mem::take(&mut cx.used) {
         let predefined =
             PREDEFINED_MEDIA.iter().map(|(medium, _)| *medium).filter(|_| realm == Realm::Medium);
@@ -59,6 +63,6 @@ pub(super) fn resolve(cx: &mut Context<'_>) {
             [] => format!("give a [[{noun}]] this name"),
             _ => format!("known names: {}{more}", known.join(", ")),
         };
-        cx.report_missing(Problem::error(name.span, message, label).help(help));
+        cx.report(Problem::error(name.span, message, label).help(help));
     }
 }

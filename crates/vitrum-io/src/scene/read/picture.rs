@@ -42,7 +42,7 @@ pub(super) fn render(cx: &mut Context<'_>, table: &DeTable<'_>, span: Span) -> O
 pub(super) fn output(cx: &mut Context<'_>, table: &DeTable<'_>, span: Span) -> Option<Output> {
     let mut fields = Fields::open(cx, &schema::OUTPUT, table, span);
     let exposure = fields.number("exposure");
-    let tone = fields.choice("tone", &[("clip", Tone::Clip), ("filmic", Tone::Filmic)]);
+    let tone = fields.choice("tone", &[("clip", Tone::Clip), ("neutral", Tone::Neutral)]);
     fields.close();
     Some(Output { exposure: exposure?, tone: tone? })
 }

@@ -7,10 +7,10 @@ pub fn markdown(table: &Table) -> String {
     let mut page = String::new();
     if let Some(choice) = &table.choice {
         let names: Vec<&str> = choice.variants.iter().map(|variant| variant.name).collect();
-        page += &format!("`{}` is required and one of {}.\n\n", choice.key, one_of(&names).replace('"', "`"));
+        page += &format!("`{}` is required: {}.\n", choice.key, code(&one_of(&names)));
     }
     if !table.keys.is_empty() {
-        page += &keys(table.keys);
+        page += &format!("\n{}", keys(table.keys));
     }
     for variant in table.variants() {
         let choice = table.choice.as_ref().map_or("", |choice| choice.key);
@@ -41,9 +41,15 @@ fn row(key: &Key) -> [String; 6] {
     cells.map(|cell: String| cell.replace('|', "\\|"))
 }
 
+/// Quoted strings of a sentence set as code.
+fn code(sentence: &str) -> String {
+    let parts = sentence.split('"').enumerate();
+    parts.map(|(i, part)| if i % 2 == 1 { format!("`\"{part}\"`") } else { part.to_string() }).collect()
+}
+
 fn value(kind: Kind) -> String {
     match kind {
-        Kind::Choice(options) => one_of(options).replace(['"'], "`"),
+        Kind::Choice(options) => code(&one_of(options)),
         Kind::Boolean => "`true` or `false`".into(),
         Kind::Name => "string".into(),
         Kind::Text => "string".into(),

@@ -307,10 +307,10 @@ impl Range {
     }
 }
 
-/// A number as a person writes it: with an exponent where that is shorter.
+/// A number as a person writes it: with an exponent only if it is long.
 fn number(x: f64) -> String {
-    let (plain, scientific) = (format!("{x}"), format!("{x:e}"));
-    if scientific.len() < plain.len() { scientific } else { plain }
+    let plain = format!("{x}");
+    if plain.len() > "1000000".len() { format!("{x:e}") } else { plain }
 }
 
 impl Kind {
@@ -356,8 +356,8 @@ mod tests {
 
     #[test]
     fn numbers_print_as_people_write_them() {
-        let shown = [1e12, 1e-12, 0.001, 65536.0, -1e12, 0.0, 180.0].map(number);
-        assert_eq!(shown, ["1e12", "1e-12", "1e-3", "65536", "-1e12", "0", "180"]);
+        let shown = [1e12, 1e-12, 0.001, 65536.0, -1e12, 0.0, 1e6].map(number);
+        assert_eq!(shown, ["1e12", "1e-12", "0.001", "65536", "-1e12", "0", "1000000"]);
     }
 
     #[test]

@@ -31,7 +31,7 @@ pub const ROTATION: Table = Table {
         Key::vector("axis", "the axis of the turn"),
         Key::new("angle", Kind::Number, "how far; counterclockwise seen from where the axis points to")
             .unit("degrees")
-            .range(Range::Closed(-1e6, 1e6)),
+            .range(Range::Closed(-1e5, 1e5)),
     ],
     choice: None,
     hints: &[],

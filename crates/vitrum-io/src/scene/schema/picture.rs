@@ -86,7 +86,7 @@ pub const OUTPUT: Table = Table {
             .default("0.0"),
         Key::new(
             "tone",
-            Kind::Choice(&["clip", "filmic"]),
+            Kind::Choice(&["clip", "neutral"]),
             "what a PNG does with more than it can show: cut it, or roll it off; EXR stays as it is",
         )
         .default("\"clip\""),

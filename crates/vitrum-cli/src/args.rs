@@ -1,0 +1,188 @@
+//! The command line.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+use vitrum_io::load::{ModelMaterial, ModelOptions};
+use vitrum_io::scene::Normals;
+use vitrum_tracer::Crop;
+
+/// Renders glass, accurately and fast.
+#[derive(Debug, Parser)]
+#[command(version, arg_required_else_help = true)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Render a scene (.toml) or a model (.obj) to a picture
+    ///
+    /// Without SCENE a built-in scene is rendered. A model is put on a floor, under a light, into the middle of the picture.
+    Render(Render),
+    /// Say what is in a scene or model, what is wrong with it, and what rendering it needs
+    Inspect(Inspect),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Render {
+    /// Scene (.toml) or model (.obj)
+    pub(crate) scene: Option<PathBuf>,
+
+    /// Picture to write: .png to look at, .exr for linear values
+    #[arg(short, long, value_name = "FILE", default_value = "vitrum.png")]
+    pub(crate) output: PathBuf,
+
+    /// Samples per pixel, in place of the scene's
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) spp: Option<u32>,
+
+    /// Deepest ray of a tree, in place of the scene's; the camera ray has depth 0
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub(crate) max_depth: Option<u32>,
+
+    /// Weight below which subtrees are given up, in place of the scene's (0 to 1)
+    #[arg(long, value_name = "W", value_parser = unit_interval)]
+    pub(crate) cutoff: Option<f64>,
+
+    /// Size of the picture in pixels, in place of the scene's
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub(crate) size: Option<[u32; 2]>,
+
+    /// Part of the picture to render, in pixels from its upper left corner; its bytes are those of the whole picture
+    #[arg(long, value_name = "X,Y,W,H", value_parser = crop)]
+    pub(crate) crop: Option<Crop>,
+
+    /// Seed of all random numbers, in place of the scene's
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+
+    /// Threads; 0 for as many as the machine has. The picture does not depend on it
+    #[arg(short, long, value_name = "N", default_value_t = 0)]
+    pub(crate) threads: usize,
+
+    /// Edge of the squares that threads work on, in pixels. The picture does not depend on it
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub(crate) tile: u32,
+
+    /// No progress, no warnings, no summary
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+
+    #[command(flatten)]
+    pub(crate) model: Model,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Inspect {
+    /// Scene (.toml) or model (.obj); the built-in scene without
+    pub(crate) scene: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) model: Model,
+}
+
+/// How a model (.obj) is shown; without effect on scenes.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Models")]
+pub(crate) struct Model {
+    /// What the model is made of
+    #[arg(long, value_enum, value_name = "M")]
+    pub(crate) material: Option<MaterialChoice>,
+
+    /// Index of refraction of the glass, inside over outside [default: 1.5]
+    #[arg(long, value_name = "N", value_parser = index)]
+    pub(crate) ior: Option<f64>,
+
+    /// Normals that the model is shaded with [default: the file's, else smooth]
+    #[arg(long, value_enum, value_name = "N")]
+    pub(crate) normals: Option<NormalsChoice>,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum MaterialChoice {
+    /// Glass, whatever the file says (the default)
+    Glass,
+    /// Grey and matte, to look at the shape
+    Matte,
+    /// What the file says
+    File,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum NormalsChoice {
+    /// Averaged at vertices
+    Smooth,
+    /// Of each triangle
+    Flat,
+    /// The file's, flat where it has none
+    File,
+}
+
+impl Model {
+    /// True when something was asked for that only a model has.
+    pub(crate) fn is_given(&self) -> bool {
+        self.material.is_some() || self.ior.is_some() || self.normals.is_some()
+    }
+
+    pub(crate) fn options(&self) -> ModelOptions {
+        let default = ModelOptions::default();
+        ModelOptions {
+            material: match self.material {
+                None | Some(MaterialChoice::Glass) => ModelMaterial::Glass,
+                Some(MaterialChoice::Matte) => ModelMaterial::Matte,
+                Some(MaterialChoice::File) => ModelMaterial::File,
+            },
+            ior: self.ior.unwrap_or(default.ior),
+            normals: self.normals.map(|n| match n {
+                NormalsChoice::Smooth => Normals::Smooth,
+                NormalsChoice::Flat => Normals::Flat,
+                NormalsChoice::File => Normals::File,
+            }),
+        }
+    }
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let number = |s: &str| s.parse::<u32>().ok().filter(|n| (1..=65536).contains(n));
+    text.split_once(['x', 'X'])
+        .and_then(|(w, h)| Some([number(w)?, number(h)?]))
+        .ok_or_else(|| "expected width and height in pixels, 1 to 65536 each, such as 640x480".to_owned())
+}
+
+fn crop(text: &str) -> Result<Crop, String> {
+    let numbers: Option<Vec<u32>> = text.split(',').map(|s| s.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[x, y, width, height]) if width > 0 && height > 0 => Ok(Crop { x, y, width, height }),
+        _ => Err("expected four whole numbers, left,top,width,height, such as 100,50,64,64".to_owned()),
+    }
+}
+
+fn unit_interval(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|n| (0.0..=1.0).contains(n));
+    number.ok_or_else(|| "expected a number from 0 to 1".to_owned())
+}
+
+fn index(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|n| (1e-3..=1e3).contains(n));
+    number.ok_or_else(|| "expected a number from 0.001 to 1000, such as 1.5".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn sizes_and_crops_are_read() {
+        assert_eq!(size("640x480"), Ok([640, 480]));
+        assert!(size("0x480").is_err() && size("640").is_err() && size("-1x2").is_err());
+        assert_eq!(crop("1, 2,3,4"), Ok(Crop { x: 1, y: 2, width: 3, height: 4 }));
+        assert!(crop("1,2,3").is_err() && crop("1,2,0,4").is_err());
+    }
+}

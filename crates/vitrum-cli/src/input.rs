@@ -1,0 +1,22 @@
+//! The scene that a command is about: a file, a model, or the built-in one.
+
+use crate::args::Model;
+use crate::failure::Failure;
+use std::path::Path;
+use vitrum_io::load::{self, Loaded};
+
+/// The built-in scene.
+const DEFAULT_SCENE: &str = include_str!("../../../scenes/default.toml");
+
+/// Loads what the command line names.
+pub(crate) fn load(path: Option<&Path>, model: &Model) -> Result<Loaded, Failure> {
+    let extension = path.and_then(Path::extension).map(|e| e.to_string_lossy().to_ascii_lowercase());
+    match (path, extension.as_deref()) {
+        (Some(path), Some("obj")) => Ok(load::model_file(path, &model.options())?),
+        _ if model.is_given() => Err(Failure::usage(
+            "--material, --ior and --normals are for models (.obj); a scene says so itself",
+        )),
+        (None, _) => Ok(load::scene_text("built-in scene", DEFAULT_SCENE, Path::new(""))?),
+        (Some(path), _) => Ok(load::scene_file(path)?),
+    }
+}

@@ -1,0 +1,185 @@
+//! `vitrum inspect`: what is in a scene, what is wrong with it, and what rendering it needs. Renders nothing.
+
+use crate::args::Inspect;
+use crate::failure::Failure;
+use crate::input;
+use std::fmt::Write;
+use std::process::ExitCode;
+use vitrum_io::load::{Loaded, MeshReport};
+use vitrum_materials::{Material, Phong, Texture};
+use vitrum_math::{DVec3, Rgb};
+use vitrum_tracer::{Light, Plan, Projection};
+
+pub(crate) fn run(arguments: &Inspect) -> Result<ExitCode, Failure> {
+    let loaded = input::load(arguments.scene.as_deref(), &arguments.model)?;
+    let mut report = String::new();
+    // Writing to a String can't fail.
+    let _ = describe(&mut report, &loaded);
+    print!("{report}");
+    Ok(ExitCode::SUCCESS)
+}
+
+fn describe(out: &mut String, loaded: &Loaded) -> std::fmt::Result {
+    let scene = &loaded.scene;
+    let settings = &loaded.settings;
+    let [width, height] = settings.size;
+    writeln!(
+        out,
+        "picture    {width} x {height}, {} samples per pixel, depth {}, cut-off {}, seed {}",
+        settings.spp, settings.max_depth, settings.cutoff, settings.seed
+    )?;
+    let projection = match *scene.camera.projection() {
+        Projection::Pinhole { fov } => format!("pinhole, {:.3}° high", fov.to_degrees()),
+        Projection::ThinLens { fov, lens_radius, focus_distance } => format!(
+            "thin lens, {:.3}° high, radius {lens_radius} m, sharp at {focus_distance:.4} m",
+            fov.to_degrees()
+        ),
+        Projection::Orthographic { height } => format!("orthographic, {height} m high"),
+    };
+    writeln!(out, "camera     at {}, {projection}", point(scene.camera.position()))?;
+    let bounds = scene.aggregate().bounds();
+    if !bounds.is_empty() {
+        writeln!(out, "bounds     {} to {}", point(bounds.min), point(bounds.max))?;
+    }
+    let media: Vec<String> = loaded.media.iter().map(|(name, ior)| format!("{name} {ior}")).collect();
+    writeln!(out, "media      {}; around everything: {}", media.join(", "), scene.medium.value())?;
+    if scene.ambient != Rgb::ZERO {
+        writeln!(out, "light      ambient, radiance {}", colour(scene.ambient))?;
+    }
+    for light in &scene.lights {
+        writeln!(out, "light      {}", describe_light(light))?;
+    }
+    writeln!(out)?;
+    objects(out, loaded)?;
+    plan(out, &Plan::new(scene, settings), loaded)?;
+    if !loaded.warnings.is_empty() {
+        write!(out, "\n{}", loaded.warnings)?;
+    }
+    Ok(())
+}
+
+fn objects(out: &mut String, loaded: &Loaded) -> std::fmt::Result {
+    let scene = &loaded.scene;
+    let names = scene.names();
+    writeln!(out, "{} objects", names.len() + scene.invisible().len())?;
+    for (id, (name, object)) in (0u32..).zip(names.iter().zip(scene.aggregate().objects())) {
+        let materials: Vec<String> = scene.materials_of(id).iter().map(describe_material).collect();
+        writeln!(out, "  {name}: {}, {}", object.shape().name(), materials.join("; "))?;
+        for mesh in loaded.meshes.iter().filter(|m| m.object == *name) {
+            describe_mesh(out, mesh)?;
+        }
+    }
+    for name in scene.invisible() {
+        writeln!(
+            out,
+            "  {name}: invisible (matched index, nothing reflected, everything transmitted); left out"
+        )?;
+    }
+    Ok(())
+}
+
+fn describe_mesh(out: &mut String, mesh: &MeshReport) -> std::fmt::Result {
+    let solid = match mesh.volume {
+        Some(volume) => format!("closed, volume {volume:.6}"),
+        None => "not closed".to_owned(),
+    };
+    writeln!(
+        out,
+        "    {}: {} triangles, {solid}, {:.1} MB",
+        mesh.file.display(),
+        mesh.triangles,
+        mesh.memory as f64 / 1e6
+    )?;
+    for finding in &mesh.findings {
+        writeln!(out, "    found: {finding}")?;
+    }
+    for mended in &mesh.mended {
+        writeln!(out, "    mended: {mended}")?;
+    }
+    Ok(())
+}
+
+/// A line for each feature: used or skipped.
+fn plan(out: &mut String, plan: &Plan, loaded: &Loaded) -> std::fmt::Result {
+    writeln!(out, "\nplan")?;
+    let count = |n: usize, what: &str| if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") };
+    let objects = loaded.scene.names().len();
+    let rows: [(&str, bool, String); 11] = [
+        (
+            "lights",
+            plan.lights > 0,
+            format!("{} asked at each point that reflects", count(plan.lights, "light")),
+        ),
+        ("shadow rays", plan.shadow_lights > 0, format!("towards {}", count(plan.shadow_lights, "light"))),
+        ("ambient", plan.ambient, "added at each hit".to_owned()),
+        ("refraction", plan.dielectrics, "trees of rays".to_owned()),
+        ("mirrors", plan.mirrors, "reflected rays".to_owned()),
+        ("textures", plan.textures, "looked up at each hit".to_owned()),
+        ("meshes", plan.meshes > 0, count(plan.meshes, "mesh tree").replace("meshs", "meshes")),
+        ("smooth normals", plan.smooth_normals, "interpolated at each hit".to_owned()),
+        ("object tree", plan.object_tree, format!("over {}", count(objects, "object"))),
+        ("lens", plan.lens, "a point of it for each sample".to_owned()),
+        ("straight shadows", plan.straight_shadows, "through glass, undeflected (biased)".to_owned()),
+    ];
+    for (feature, used, how) in rows {
+        let how = if used { how } else { "skipped".to_owned() };
+        writeln!(out, "  {feature:<17} {how}")?;
+    }
+    if plan.invisible > 0 {
+        writeln!(out, "  {:<17} {} left out", "invisible", count(plan.invisible, "object"))?;
+    }
+    Ok(())
+}
+
+fn describe_light(light: &Light) -> String {
+    match light {
+        Light::Point { position, intensity, falloff, .. } => {
+            format!("point at {}, intensity {}, {falloff:?}", point(*position), colour(*intensity))
+        }
+        Light::Directional { towards, irradiance, .. } => {
+            format!("from direction {}, irradiance {}", point(*towards), colour(*irradiance))
+        }
+    }
+}
+
+fn describe_material(material: &Material) -> String {
+    let phong = material.phong().map(describe_phong).unwrap_or_default();
+    match material {
+        Material::Matte(_) | Material::Phong(_) => format!("{}{phong}", material.name()),
+        Material::Reflective { kr, .. } => format!("reflective kr {}{phong}", colour(*kr)),
+        Material::Transparent(t) => {
+            format!("transparent ior {} kr {} kt {}{phong}", t.interface.eta(), colour(t.kr), colour(t.kt))
+        }
+        Material::Emissive { radiance } => format!("emissive {}", texture(radiance)),
+    }
+}
+
+fn describe_phong(p: &Phong) -> String {
+    let mut text = String::new();
+    if p.ka > 0.0 || p.kd > 0.0 {
+        text += &format!(" ka {} kd {} colour {}", p.ka, p.kd, texture(&p.colour));
+    }
+    if p.ks != Rgb::ZERO {
+        text += &format!(" ks {} exponent {}", colour(p.ks), p.exponent);
+    }
+    text
+}
+
+fn texture(texture: &Texture) -> String {
+    match texture {
+        Texture::Constant(c) => colour(*c),
+        Texture::Checker(c) => format!("checker {} / {}, {} m", colour(c.even), colour(c.odd), c.size),
+    }
+}
+
+fn colour(c: Rgb) -> String {
+    if c.x == c.y && c.y == c.z { c.x.to_string() } else { format!("[{}, {}, {}]", c.x, c.y, c.z) }
+}
+
+fn point(p: DVec3) -> String {
+    let short = |x: f64| {
+        let text = format!("{x:.4}");
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    };
+    format!("({}, {}, {})", short(p.x), short(p.y), short(p.z))
+}

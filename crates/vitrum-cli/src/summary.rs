@@ -1,0 +1,93 @@
+//! What is said when a render is done.
+
+use std::fmt::Write;
+use std::path::Path;
+use std::time::Duration;
+use vitrum_tracer::Rendering;
+
+/// Where the time went.
+pub(crate) struct Phases {
+    pub(crate) loading: Duration,
+    pub(crate) rendering: Duration,
+    pub(crate) writing: Duration,
+}
+
+/// The summary, several lines.
+pub(crate) fn summary(rendering: &Rendering, phases: &Phases, output: &Path) -> String {
+    let stats = &rendering.stats;
+    let seconds = |d: Duration| format!("{:.2} s", d.as_secs_f64());
+    let rate = stats.rays() as f64 / phases.rendering.as_secs_f64().max(1e-9) / 1e6;
+    let mut text = String::new();
+    let mut line = |name: &str, value: String| {
+        // Writing to a String can't fail.
+        let _ = writeln!(text, "{name:<10} {value}");
+    };
+    let area = rendering.film.area();
+    let samples = rendering.film.fewest_samples();
+    let stopped = if rendering.complete { "" } else { " (stopped)" };
+    line(
+        "wrote",
+        format!(
+            "{} ({} x {}, {samples} samples per pixel{stopped})",
+            output.display(),
+            area.width,
+            area.height
+        ),
+    );
+    line(
+        "time",
+        format!(
+            "{} loading, {} rendering, {} writing",
+            seconds(phases.loading),
+            seconds(phases.rendering),
+            seconds(phases.writing)
+        ),
+    );
+    line(
+        "rays",
+        format!(
+            "{} ({rate:.1} million/s): {} camera, {} reflected, {} transmitted, {} shadow",
+            stats.rays(),
+            stats.camera_rays,
+            stats.reflected_rays,
+            stats.transmitted_rays,
+            stats.shadow_rays
+        ),
+    );
+    let nodes = stats.nodes() as f64 / stats.samples.max(1) as f64;
+    line("tree", format!("{nodes:.2} nodes per sample, deepest {}", stats.deepest));
+    let given_up = rendering.film.given_up();
+    let at_most = rendering.plan.radiance_bound.map_or(String::new(), |bound| {
+        format!(
+            "; at most {:.2e} of radiance is missing on average, {:.2e} in one pixel",
+            given_up.mean * bound,
+            given_up.largest * bound
+        )
+    });
+    line(
+        "given up",
+        format!(
+            "weight {:.2e} on average, {:.2e} in the worst pixel{at_most}",
+            given_up.mean, given_up.largest
+        ),
+    );
+    if stats.geometry.contradictions > 0 || stats.normal_fallbacks > 0 {
+        line(
+            "rare",
+            format!(
+                "{} neighbouring faces passed over at edges, {} interpolated normals replaced by geometric ones",
+                stats.geometry.contradictions, stats.normal_fallbacks
+            ),
+        );
+    }
+    if let Some(first) = stats.first_dropped {
+        line(
+            "warning",
+            format!(
+                "{} samples were not finite or negative and are left out, the first in pixel ({}, {}), sample {}",
+                stats.dropped, first.x, first.y, first.sample
+            ),
+        );
+    }
+    text
+}

@@ -1,0 +1,211 @@
+//! The tree against trying every triangle, and rays aimed where meshes leak.
+
+use super::{MeshData, TriangleMesh, smooth_normals};
+use crate::aggregate::{Aggregate, Counters, Hit, Nearest};
+use crate::departure::Query;
+use crate::interaction::Side;
+use crate::object::Object;
+use crate::shape::Shape;
+use std::sync::Arc;
+use vitrum_math::{DVec3, Ray, Transform, unit};
+
+/// A small generator for test input (splitmix64).
+struct Random(u64);
+
+impl Random {
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let x = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        (x ^ x >> 31) as f64 / 18_446_744_073_709_551_616.0
+    }
+
+    fn vector(&mut self) -> DVec3 {
+        DVec3::new(self.unit(), self.unit(), self.unit()) * 2.0 - DVec3::ONE
+    }
+}
+
+/// A closed ball with bumps: a latitude-longitude grid with one vertex at each pole.
+fn bumpy_ball(rings: u32, segments: u32) -> MeshData {
+    let mut positions = vec![DVec3::Y, -DVec3::Y];
+    for ring in 1..rings {
+        for segment in 0..segments {
+            let (theta, phi) = (
+                f64::from(ring) / f64::from(rings) * std::f64::consts::PI,
+                f64::from(segment) / f64::from(segments) * std::f64::consts::TAU,
+            );
+            let bump = 1.0 + 0.1 * (5.0 * theta).sin() * (4.0 * phi).cos();
+            positions.push(DVec3::new(theta.sin() * phi.cos(), theta.cos(), theta.sin() * phi.sin()) * bump);
+        }
+    }
+    let at = |ring: u32, segment: u32| 2 + (ring - 1) * segments + segment % segments;
+    let mut triangles = Vec::new();
+    for s in 0..segments {
+        triangles.push([0, at(1, s + 1), at(1, s)]);
+        triangles.push([1, at(rings - 1, s), at(rings - 1, s + 1)]);
+        for ring in 1..rings - 1 {
+            let (a, b, c, d) = (at(ring, s), at(ring, s + 1), at(ring + 1, s), at(ring + 1, s + 1));
+            triangles.extend([[a, b, d], [a, d, c]]);
+        }
+    }
+    MeshData { positions, triangles, ..MeshData::default() }
+}
+
+fn soup(random: &mut Random, triangles: u32, size: f64) -> MeshData {
+    let mut positions = Vec::new();
+    for _ in 0..triangles {
+        let centre = random.vector();
+        positions.extend((0..3).map(|_| centre + random.vector() * size));
+    }
+    let triangles = (0..triangles).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    MeshData { positions, triangles, ..MeshData::default() }
+}
+
+fn closest(mesh: &TriangleMesh, ray: &Ray) -> Option<Hit> {
+    let mut nearest = Nearest::default();
+    mesh.closest(ray, &Query::new(*ray), 0, &mut nearest, &mut Counters::default());
+    nearest.found()
+}
+
+/// The tree finds exactly what trying every triangle finds: distance, face and weights, to the last bit.
+#[test]
+fn the_tree_finds_what_trying_every_triangle_finds() {
+    let mut random = Random(1);
+    let mut meshes = vec![
+        bumpy_ball(12, 16),
+        soup(&mut random, 300, 0.3),
+        soup(&mut random, 300, 1e-3),
+        soup(&mut random, 1, 0.5),
+        // Needles: two corners nearly coincide.
+        {
+            let mut m = soup(&mut random, 200, 0.8);
+            for i in 0..200 {
+                m.positions[3 * i + 1] = m.positions[3 * i] + random.vector() * 1e-6;
+            }
+            m
+        },
+        // A stack of equal triangles, and the same once more turned around.
+        MeshData {
+            positions: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
+            triangles: [[0, 1, 2]; 20].into_iter().chain([[0, 2, 1]; 20]).collect(),
+            ..MeshData::default()
+        },
+        // Flat: no extent along z.
+        {
+            let mut m = soup(&mut random, 200, 0.3);
+            m.positions.iter_mut().for_each(|p| p.z = 0.25);
+            m
+        },
+    ];
+    for (scale, offset) in [(1e-30, 0.0), (1e30, 0.0), (1.0, 1e5)] {
+        let mut moved = bumpy_ball(10, 12);
+        moved.positions.iter_mut().for_each(|p| *p = *p * scale + DVec3::splat(offset));
+        meshes.push(moved);
+    }
+    for (number, data) in meshes.iter().enumerate() {
+        let mesh = TriangleMesh::new(data).expect("valid mesh");
+        let (centre, size) = (mesh.bounds().centre(), mesh.bounds().extent().max_element());
+        let mut hits = 0;
+        for i in 0..3000 {
+            let origin = centre + random.vector() * size * if i % 2 == 0 { 3.0 } else { 0.6 };
+            // Every third ray goes at a vertex, every fifth along an axis.
+            let target = match i % 15 {
+                0 | 3 | 6 | 9 | 12 => data.positions[(random.unit() * data.positions.len() as f64) as usize],
+                5 | 10 => origin + DVec3::AXES[i % 3] * if i % 2 == 0 { 1.0 } else { -1.0 } * size,
+                _ => centre + random.vector() * size * 0.6,
+            };
+            let ray = Ray::new(origin, (target - origin).normalize());
+            let mut oracle = Nearest::default();
+            mesh.closest_of_all(&ray, &Query::new(ray), &mut oracle);
+            let found = closest(&mesh, &ray);
+            assert_eq!(found, oracle.found(), "mesh {number}, {ray:?}");
+            let any = mesh.any(&ray, &Query::new(ray), 0, f64::INFINITY, &mut Counters::default());
+            assert_eq!(any, found.is_some());
+            hits += u32::from(found.is_some());
+        }
+        assert!(hits > 20, "mesh {number}: {hits} hits");
+    }
+}
+
+/// No ray from inside a closed mesh gets out unseen, wherever it is aimed; seen from outside it enters as often as it
+/// leaves.
+#[test]
+fn closed_meshes_do_not_leak() {
+    let mut random = Random(2);
+    for (scale, offset) in [(1.0, 0.0), (1e-4, 0.0), (1e4, 0.0), (1.0, 1e5)] {
+        let mut data = bumpy_ball(24, 32);
+        data.positions.iter_mut().for_each(|p| *p = *p * scale + DVec3::splat(offset));
+        let mesh = Shape::Mesh(Arc::new(TriangleMesh::new(&data).expect("valid mesh")));
+        let skew = Transform::scale(DVec3::new(-1.5, 0.7, 2.0)).expect("invertible");
+        let skew = skew.then(&Transform::rotate(unit(DVec3::new(1.0, 2.0, 3.0)), 0.5)).expect("invertible");
+        for transform in [Transform::IDENTITY, skew] {
+            let object = Object::new(mesh.clone(), &transform, false).expect("valid object");
+            let aggregate = Aggregate::new(vec![object]);
+            for i in 0..40_000 {
+                let inside = transform.world_point(random.vector() * 0.1 * scale + DVec3::splat(offset));
+                let pick = |random: &mut Random, n: usize| (random.unit() * n as f64) as usize;
+                let triangle = data.triangles[pick(&mut random, data.triangles.len())];
+                let corners = triangle.map(|v| data.positions[v as usize]);
+                let target = transform.world_point(match i % 3 {
+                    0 => corners[0],
+                    1 => (corners[0] + corners[1]) * 0.5,
+                    _ => corners[0] + (corners[1] - corners[0]) * random.unit(),
+                });
+                let direction = if i % 7 == 0 { DVec3::AXES[i % 3] } else { (target - inside).normalize() };
+                let from_inside = Query::new(Ray::new(inside, direction));
+                let mut counters = Counters::default();
+                let hit = aggregate
+                    .closest(&from_inside, &mut counters)
+                    .expect("a ray from inside gets out unseen");
+                let surface = aggregate.interaction(&from_inside, &hit);
+                assert!(!surface.front, "from inside the back is seen");
+                // On from there, straight through: outside nothing may come that contradicts being outside.
+                let mut query = surface.leave(direction, Side::Transmitted);
+                let mut inside_now = false;
+                for _ in 0..20 {
+                    let Some(hit) = aggregate.closest(&query, &mut counters) else { break };
+                    let surface = aggregate.interaction(&query, &hit);
+                    assert_eq!(surface.front, !inside_now, "entering and leaving alternate");
+                    inside_now = !inside_now;
+                    query = surface.leave(direction, Side::Transmitted);
+                }
+                assert!(!inside_now, "ends outside");
+            }
+        }
+    }
+}
+
+/// Rays that leave a surface, reflected or transmitted, never meet it again at once: scale and place do not matter.
+#[test]
+fn departing_rays_see_no_surface_at_their_start() {
+    let mut random = Random(3);
+    for (scale, offset) in [(1e-3, 0.0), (1.0, 0.0), (1e5, 0.0), (1.0, 1e6), (1e-3, 1e3)] {
+        let mut data = smooth_normals(bumpy_ball(24, 32));
+        // Without bumps: convex, so a reflected ray can't come back at all.
+        data.positions.iter_mut().for_each(|p| *p = unit(*p) * scale + DVec3::splat(offset));
+        let mesh = Shape::Mesh(Arc::new(TriangleMesh::new(&data).expect("valid mesh")));
+        let aggregate = Aggregate::new(vec![Object::new(mesh, &Transform::IDENTITY, false).expect("valid")]);
+        let centre = DVec3::splat(offset);
+        for i in 0..20_000 {
+            let vertex = data.positions[(random.unit() * data.positions.len() as f64) as usize];
+            let target = if i % 2 == 0 { vertex } else { centre + random.vector() * 0.5 * scale };
+            let start = centre + unit(random.vector()) * 3.0 * scale;
+            let query = Query::new(Ray::new(start, (target - start).normalize()));
+            let mut counters = Counters::default();
+            let Some(hit) = aggregate.closest(&query, &mut counters) else { continue };
+            let surface = aggregate.interaction(&query, &hit);
+            // A ray that only touches the outline, at a vertex, enters and leaves in one point: whether a face is left to be
+            // met is then a matter of the last bit, and either answer is right.
+            if surface.wo.dot(unit(surface.point - centre)) < 0.15 {
+                continue;
+            }
+            assert!(surface.front);
+            let mirrored = surface.wo * -1.0 + surface.ng * (2.0 * surface.wo.dot(surface.ng));
+            let reflected = surface.leave(mirrored, Side::Incident);
+            assert_eq!(aggregate.closest(&reflected, &mut counters), None, "scale {scale}, offset {offset}");
+            let inward = surface.leave(query.ray.direction, Side::Transmitted);
+            let next = aggregate.closest(&inward, &mut counters).expect("leaves again");
+            assert!(!aggregate.interaction(&inward, &next).front);
+        }
+    }
+}

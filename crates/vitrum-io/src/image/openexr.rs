@@ -1,0 +1,133 @@
+//! OpenEXR for further work: linear float32, nothing lost.
+//!
+//! One layer of R, G and B, scanlines from top to bottom, ZIP compression (16 lines at a time), chromaticities of
+//! Rec.709 with white D65, metadata as text attributes. The same image gives the same bytes: the library keeps
+//! attributes in a hash map of random order, so the header is sorted by name afterwards, as the format's own library
+//! has it.
+
+use std::fs::File;
+use std::io::{BufReader, Cursor};
+use std::path::Path;
+
+use ::exr::meta::attribute::{AttributeValue, Chromaticities, Compression, LineOrder, Text};
+use ::exr::prelude::{
+    Encoding, Image, Layer, LayerAttributes, MetaData, ReadChannels, ReadLayers, SpecificChannels, Vec2,
+    WritableImage,
+};
+
+use super::{ImageError, ImageRgb, ImageView};
+
+/// Images with more pixels are not read: a few damaged bytes must not take all memory.
+const MOST_PIXELS: usize = 1 << 28;
+
+/// Primaries and white of ITU-R BT.709.
+const REC709: Chromaticities = Chromaticities {
+    red: Vec2(0.64, 0.33),
+    green: Vec2(0.30, 0.60),
+    blue: Vec2(0.15, 0.06),
+    white: Vec2(0.3127, 0.3290),
+};
+
+/// The bytes of an EXR file. Keys and values were checked before.
+pub(super) fn encode(image: ImageView<'_>, metadata: &[(String, String)]) -> ::exr::error::Result<Vec<u8>> {
+    let width = image.width as usize;
+    let pixel = |at: Vec2<usize>| {
+        let [r, g, b] = image.pixels[at.y() * width + at.x()];
+        (r, g, b)
+    };
+    let encoding = Encoding {
+        compression: Compression::ZIP16,
+        blocks: ::exr::image::Blocks::ScanLines,
+        line_order: LineOrder::Increasing,
+    };
+    let size = Vec2(width, image.height as usize);
+    let layer = Layer::new(size, LayerAttributes::default(), encoding, SpecificChannels::rgb(pixel));
+    let mut file = Image::from_layer(layer);
+    file.attributes.chromaticities = Some(REC709);
+    file.attributes.other = metadata
+        .iter()
+        .map(|(key, value)| {
+            let text = |text: &str| Text::from_slice_unchecked(text.as_bytes());
+            (text(&super::stored_key(key)), AttributeValue::Text(text(value)))
+        })
+        .collect();
+    let mut bytes = Cursor::new(Vec::new());
+    file.write().non_parallel().to_buffered(&mut bytes)?;
+    sort_attributes(bytes.get_mut()).ok_or(::exr::error::Error::Invalid("header".into()))?;
+    Ok(bytes.into_inner())
+}
+
+/// Sorts the header's attributes by name. None: this is not the header of a file with one layer.
+///
+/// A header is a magic number and a version (4 bytes each), then for each attribute a name and a type, both ended by
+/// NUL, the size of its value (4 bytes, little-endian) and the value, and a NUL at the end.
+fn sort_attributes(bytes: &mut [u8]) -> Option<()> {
+    const START: usize = 8;
+    let mut end = START;
+    let mut attributes = Vec::new();
+    while *bytes.get(end)? != 0 {
+        let rest = &bytes[end..];
+        let name = rest.iter().position(|&byte| byte == 0)?;
+        let kind = rest[name + 1..].iter().position(|&byte| byte == 0)?;
+        let size = name + 1 + kind + 1;
+        let value = u32::from_le_bytes(rest.get(size..size + 4)?.try_into().ok()?);
+        let length = size + 4 + usize::try_from(value).ok()?;
+        attributes.push((rest[..name].to_vec(), rest.get(..length)?.to_vec()));
+        end += length;
+    }
+    attributes.sort();
+    let sorted = attributes.into_iter().flat_map(|(_, attribute)| attribute);
+    for (byte, sorted) in bytes[START..end].iter_mut().zip(sorted) {
+        *byte = sorted;
+    }
+    Some(())
+}
+
+/// Reads R, G and B of the first layer that has them, with all text attributes, sorted.
+pub(super) fn read(path: &Path) -> Result<ImageRgb, ImageError> {
+    let unreadable = |source| ImageError::Unreadable { path: path.to_owned(), source };
+    let damaged = |message: String| ImageError::Decode { path: path.to_owned(), message };
+    let open = || {
+        let file = File::open(path).map_err(unreadable)?;
+        if !file.metadata().map_err(unreadable)?.is_file() {
+            return Err(unreadable(std::io::Error::other("this is not a file")));
+        }
+        Ok(BufReader::new(file))
+    };
+    let headers =
+        MetaData::read_from_buffered(open()?, false).map_err(|error| damaged(error.to_string()))?.headers;
+    for header in &headers {
+        let Vec2(width, height) = header.layer_size;
+        if width.checked_mul(height).is_none_or(|pixels| pixels > MOST_PIXELS) {
+            return Err(damaged(format!("{width} x {height} pixels, more than {MOST_PIXELS}")));
+        }
+    }
+    let image = ::exr::prelude::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .rgb_channels(
+            |Vec2(width, height), _| (width, vec![[0_f32; 3]; width * height]),
+            |(width, pixels), at, (r, g, b): (f32, f32, f32)| pixels[at.y() * *width + at.x()] = [r, g, b],
+        )
+        .first_valid_layer()
+        .all_attributes()
+        .non_parallel()
+        .from_buffered(open()?)
+        .map_err(|error| damaged(error.to_string()))?;
+    let layer = image.layer_data;
+    let attributes = image.attributes.other.iter().chain(&layer.attributes.other);
+    let mut metadata: Vec<(String, String)> = attributes
+        .filter_map(|(name, value)| match value {
+            AttributeValue::Text(text) => {
+                let readable = |text: &Text| String::from_utf8_lossy(text.as_slice()).into_owned();
+                Some((readable(name), readable(text)))
+            }
+            _ => None,
+        })
+        .collect();
+    metadata.sort();
+    let side = |side: usize| u32::try_from(side).map_err(|_| damaged(format!("a side of {side} pixels")));
+    let Vec2(width, height) = layer.size;
+    let (width, height) = (side(width)?, side(height)?);
+    Ok(ImageRgb { width, height, pixels: layer.channel_data.pixels.1, metadata })
+}

@@ -1,0 +1,414 @@
+//! From a description to a scene: every name resolved, every number in the tracer's own units.
+
+use super::matter::Matter;
+use super::meshes::{MeshReport, Meshes};
+use super::naming::Names;
+use super::{LoadError, Loaded, error};
+use crate::diagnostic::{Diagnostic, Diagnostics, Source};
+use crate::image::{Display, Tone};
+use crate::scene::{self, MaterialChoice, Normals, SceneDesc, Step};
+use std::path::Path;
+use vitrum_geometry::Object;
+use vitrum_geometry::shape::{Cuboid, Cylinder, Disk, Plane, Rectangle, Shape, ShapeError, Sphere};
+use vitrum_materials::Material;
+use vitrum_math::{Rgb, Transform, unit};
+use vitrum_tracer::{
+    Background, Camera, Falloff, Light, Projection, Scene, SceneObject, Settings, ShadowMode,
+};
+
+/// Everything that lowering an object needs and adds to.
+struct Lowering<'a> {
+    desc: &'a SceneDesc,
+    source: &'a Source<'a>,
+    folder: &'a Path,
+    matter: Matter<'a>,
+    meshes: Meshes,
+    names: Names,
+    problems: Diagnostics,
+    objects: Vec<SceneObject>,
+    reports: Vec<MeshReport>,
+}
+
+/// Lowers a description; `problems` are those that reading it has found.
+pub(super) fn lower(
+    desc: &SceneDesc,
+    source: &Source<'_>,
+    folder: &Path,
+    problems: Diagnostics,
+) -> Result<Loaded, LoadError> {
+    let mut lowering = Lowering {
+        desc,
+        source,
+        folder,
+        matter: Matter::new(desc),
+        meshes: Meshes::default(),
+        names: Names::default(),
+        problems,
+        objects: Vec::new(),
+        reports: Vec::new(),
+    };
+    for object in &desc.objects {
+        lowering.object(object);
+    }
+    let camera = lowering.camera();
+    let Lowering { matter, mut problems, objects, reports, .. } = lowering;
+    let scene = camera.filter(|_| !problems.has_errors()).map(|camera| Scene::new(objects, camera));
+    match scene {
+        Some(Ok(mut scene)) => {
+            scene.background = background(&desc.background);
+            scene.medium = matter.medium;
+            (scene.ambient, scene.lights) = lights(&desc.lights);
+            problems.sort();
+            Ok(Loaded {
+                scene,
+                settings: settings(&desc.render),
+                display: display(&desc.output),
+                meshes: reports,
+                media: matter.media(),
+                warnings: problems,
+            })
+        }
+        Some(Err(reason)) => {
+            problems.push(Diagnostic::error(source.name(), reason.to_string()));
+            Err(LoadError::Invalid(problems))
+        }
+        None => {
+            problems.sort();
+            Err(LoadError::Invalid(problems))
+        }
+    }
+}
+
+impl Lowering<'_> {
+    fn camera(&mut self) -> Option<Camera> {
+        let c = &self.desc.camera;
+        let projection = match c.lens {
+            scene::Lens::Pinhole { fov } => Projection::Pinhole { fov: fov.to_radians() },
+            scene::Lens::Thin { fov, radius, focus_distance } => {
+                Projection::ThinLens { fov: fov.to_radians(), lens_radius: radius, focus_distance }
+            }
+            scene::Lens::Orthographic { height } => Projection::Orthographic { height },
+        };
+        match Camera::new(c.position, c.target, c.up, projection) {
+            Ok(camera) => Some(camera),
+            Err(reason) => {
+                self.problems.push(error(self.source, c.span, reason.to_string(), "this camera"));
+                None
+            }
+        }
+    }
+
+    /// Adds an object, or the problems that keep it out. A model file adds one for each of its parts.
+    fn object(&mut self, object: &scene::Object) {
+        let Some(transform) = self.transform(&object.transform) else { return };
+        let shape = self.original(object);
+        if let scene::Shape::Mesh { file, file_span, normals, group, force } = shape {
+            self.mesh(
+                object,
+                file,
+                *file_span,
+                *normals,
+                group.as_ref().map(|g| g.text.as_str()),
+                *force,
+                &transform,
+            );
+            return;
+        }
+        let analytic = match analytic(shape) {
+            Ok(analytic) => analytic,
+            Err(reason) => {
+                self.problems.push(error(self.source, object.span, reason.to_string(), "this object"));
+                return;
+            }
+        };
+        let Some(material) = self.material_of(object) else { return };
+        let kind = analytic.name();
+        let content = || format!("{analytic:?} {material:?} {:?} {}", object.transform.steps, object.flip);
+        let name = match &object.name {
+            Some(name) => name.text.clone(),
+            None => self.names.for_content(kind, &content()),
+        };
+        self.place(object, analytic, &transform, name, vec![material]);
+    }
+
+    /// The shape, or of an instance the shape that it shares.
+    fn original<'o>(&self, object: &'o scene::Object) -> &'o scene::Shape
+    where
+        Self: 'o,
+    {
+        match &object.shape {
+            scene::Shape::Instance { of } => {
+                let named = |o: &&scene::Object| o.name.as_ref().is_some_and(|name| name.text == of.text);
+                self.desc.objects.iter().find(named).map_or(&object.shape, |o| &o.shape)
+            }
+            shape => shape,
+        }
+    }
+
+    fn transform(&mut self, transform: &scene::Transform) -> Option<Transform> {
+        let step = |step: &Step| match *step {
+            Step::Translate(offset) => Ok(Transform::translate(offset)),
+            Step::Rotate { axis, angle } => Ok(Transform::rotate(unit(axis), angle.to_radians())),
+            Step::Scale(factors) => Transform::scale(factors),
+        };
+        let all = transform.steps.iter().try_fold(Transform::IDENTITY, |all, s| all.then(&step(s)?));
+        match all {
+            Ok(all) => Some(all),
+            Err(reason) => {
+                self.problems.push(error(
+                    self.source,
+                    transform.span,
+                    reason.to_string(),
+                    "these steps together",
+                ));
+                None
+            }
+        }
+    }
+
+    /// The material that an object, or the original of an instance, chooses; `None` where it leaves the choice to a file.
+    fn choice<'o>(&self, object: &'o scene::Object) -> Option<&'o MaterialChoice>
+    where
+        Self: 'o,
+    {
+        match (&object.material, &object.shape) {
+            (Some(choice), _) => Some(choice),
+            (None, scene::Shape::Instance { of }) => {
+                let named = |o: &&scene::Object| o.name.as_ref().is_some_and(|name| name.text == of.text);
+                self.desc.objects.iter().find(named).and_then(|o| o.material.as_ref())
+            }
+            (None, _) => None,
+        }
+    }
+
+    fn chosen(&mut self, choice: &MaterialChoice) -> Option<Material> {
+        let described = match choice {
+            MaterialChoice::Named(name) => self.matter.named(&name.text)?,
+            MaterialChoice::Inline(material) => {
+                return self.matter.material(material, self.source, &mut self.problems);
+            }
+        };
+        self.matter.material(described, self.source, &mut self.problems)
+    }
+
+    fn material_of(&mut self, object: &scene::Object) -> Option<Material> {
+        let choice = self.choice(object).cloned();
+        let Some(choice) = choice else {
+            self.problems.push(error(
+                self.source,
+                object.span,
+                "the object has no material".to_owned(),
+                "this object",
+            ));
+            return None;
+        };
+        self.chosen(&choice)
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "the fields of one variant, taken apart")]
+    fn mesh(
+        &mut self,
+        object: &scene::Object,
+        file: &Path,
+        file_span: crate::diagnostic::Span,
+        normals: Normals,
+        group: Option<&str>,
+        force: bool,
+        transform: &Transform,
+    ) {
+        let choice = self.choice(object).cloned();
+        let chosen = choice.as_ref().map(|choice| self.chosen(choice));
+        let path = self.folder.join(file);
+        let (source, problems) = (self.source, &mut self.problems);
+        let mut warn =
+            |warning: &str| problems.push(Diagnostic::warning(path.display().to_string(), warning));
+        let parts = match self.meshes.prepare(&path, normals, group, &mut warn) {
+            Ok(parts) => parts.to_vec(),
+            Err(reason) => {
+                self.problems.push(
+                    error(source, file_span, reason.to_string(), "this file")
+                        .help("paths are relative to the folder of the scene file"),
+                );
+                return;
+            }
+        };
+        let base = match &object.name {
+            Some(name) => name.text.clone(),
+            None => {
+                let content = format!(
+                    "{file:?} {normals:?} {group:?} {force} {chosen:?} {:?} {}",
+                    object.transform.steps, object.flip
+                );
+                self.names.for_content("mesh", &content)
+            }
+        };
+        let several = parts.len() > 1;
+        for (number, part) in parts.into_iter().enumerate() {
+            let name = match (several, part.name.as_str()) {
+                (false, _) => base.clone(),
+                (true, "") => format!("{base}/{}", number + 1),
+                (true, part) => format!("{base}/{part}"),
+            };
+            let materials = match &chosen {
+                Some(Some(material)) => vec![*material],
+                Some(None) => continue,
+                None => self.imported(&part.materials, object),
+            };
+            let report = MeshReport { object: name.clone(), ..part.report };
+            self.check_solid(&report, materials.iter().any(Material::is_dielectric), force, file_span);
+            self.reports.push(report);
+            self.place(object, Shape::Mesh(part.mesh), transform, name, materials);
+        }
+    }
+
+    /// The materials of a model file.
+    fn imported(
+        &mut self,
+        materials: &[Option<crate::obj::MtlMaterial>],
+        object: &scene::Object,
+    ) -> Vec<Material> {
+        let undefined = crate::obj::MtlMaterial::undefined("");
+        let mut imported = Vec::new();
+        for material in materials {
+            match self.matter.imported(&material.as_ref().unwrap_or(&undefined).meaning()) {
+                Ok(material) => imported.push(material),
+                Err(reason) => {
+                    let label = "the material library of this model";
+                    self.problems.push(error(self.source, object.span, reason, label));
+                }
+            }
+        }
+        imported
+    }
+
+    /// Glass needs an inside. A mesh without one is refused, or taken on demand.
+    fn check_solid(
+        &mut self,
+        report: &MeshReport,
+        is_glass: bool,
+        force: bool,
+        span: crate::diagnostic::Span,
+    ) {
+        let file = report.file.display();
+        for mended in &report.mended {
+            self.problems.push(Diagnostic::warning(self.source.name(), format!("{file}: mended: {mended}")));
+        }
+        if !is_glass || report.closed {
+            return;
+        }
+        let findings = report.findings.join("; ");
+        let message = format!("{file} does not enclose a volume, so glass has no inside: {findings}");
+        let problem = if force {
+            let message = format!("{message}. Rays that leave through the gaps are taken as if back outside");
+            Diagnostic::warning(self.source.name(), message)
+        } else {
+            error(self.source, span, message, "this mesh")
+                .help("close the mesh in a modelling tool, or write `force = true` to take it as it is")
+        };
+        self.problems.push(problem);
+    }
+
+    fn place(
+        &mut self,
+        object: &scene::Object,
+        shape: Shape,
+        transform: &Transform,
+        name: String,
+        materials: Vec<Material>,
+    ) {
+        match Object::new(shape, transform, object.flip) {
+            Ok(placed) => self.objects.push(SceneObject { name, object: placed, materials }),
+            Err(reason) => {
+                let message = format!("transformed, the object is degenerate: {reason}");
+                self.problems.push(error(self.source, object.span, message, "this object"));
+            }
+        }
+    }
+}
+
+fn analytic(shape: &scene::Shape) -> Result<Shape, ShapeError> {
+    use scene::Shape as Described;
+    Ok(match *shape {
+        Described::Sphere { center, radius } => Shape::Sphere(Sphere::new(center, radius)?),
+        Described::Plane { point, normal } => Shape::Plane(Plane::new(point, normal)?),
+        Described::Disk { center, normal, radius } => Shape::Disk(Disk::new(center, normal, radius)?),
+        Described::Rectangle { corner, edge_u, edge_v } => {
+            Shape::Rectangle(Rectangle::new(corner, edge_u, edge_v)?)
+        }
+        Described::Box { min, max } => Shape::Cuboid(Cuboid::new(min, max)?),
+        Described::Cylinder { bottom, top, radius, capped } => {
+            Shape::Cylinder(Cylinder::new(bottom, top, radius, capped)?)
+        }
+        Described::Mesh { .. } | Described::Instance { .. } => {
+            unreachable!("meshes are read from files, and an instance never refers to another")
+        }
+    })
+}
+
+/// Ambient radiance, and the other lights in the order of their names (unnamed ones by what they are), so that sums over
+/// them never depend on the order in the file.
+fn lights(described: &[scene::Light]) -> (Rgb, Vec<Light>) {
+    let mut ambient: Vec<(String, Rgb)> = Vec::new();
+    let mut lights: Vec<(String, Light)> = Vec::new();
+    for light in described {
+        let lowered = match light.kind {
+            scene::LightKind::Ambient { radiance } => {
+                ambient.push((format!("{radiance:?}"), radiance));
+                continue;
+            }
+            scene::LightKind::Point { position, intensity, falloff, shadows } => Light::Point {
+                position,
+                intensity,
+                falloff: match falloff {
+                    scene::Falloff::InverseSquare => Falloff::InverseSquare,
+                    scene::Falloff::None => Falloff::None,
+                },
+                shadows,
+            },
+            scene::LightKind::Directional { direction, irradiance, shadows } => {
+                Light::Directional { towards: -unit(direction), irradiance, shadows }
+            }
+        };
+        if !lowered.is_dark() {
+            let key = light
+                .name
+                .as_ref()
+                .map_or_else(|| format!("\u{10ffff}{lowered:?}"), |name| name.text.clone());
+            lights.push((key, lowered));
+        }
+    }
+    ambient.sort_by(|a, b| a.0.cmp(&b.0));
+    lights.sort_by(|a, b| a.0.cmp(&b.0));
+    let ambient = ambient.into_iter().fold(Rgb::ZERO, |sum, (_, radiance)| sum + radiance);
+    (ambient, lights.into_iter().map(|(_, light)| light).collect())
+}
+
+fn background(described: &scene::Background) -> Background {
+    match *described {
+        scene::Background::Constant { color } => Background::Constant(color),
+        scene::Background::Gradient { bottom, top } => Background::Gradient { bottom, top },
+    }
+}
+
+fn settings(render: &scene::Render) -> Settings {
+    Settings {
+        size: render.size,
+        spp: render.spp,
+        max_depth: render.max_depth,
+        cutoff: render.cutoff,
+        seed: render.seed,
+        shadow: match render.shadow {
+            scene::Shadow::Opaque => ShadowMode::Opaque,
+            scene::Shadow::Straight => ShadowMode::Straight,
+        },
+        ..Settings::default()
+    }
+}
+
+fn display(output: &scene::Output) -> Display {
+    let tone = match output.tone {
+        scene::Tone::Clip => Tone::Clip,
+        scene::Tone::Neutral => Tone::Neutral,
+    };
+    Display { exposure_stops: output.exposure, tone }
+}

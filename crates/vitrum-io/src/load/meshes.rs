@@ -1,0 +1,179 @@
+//! Mesh files: read once, mended where that needs no guess, and examined.
+
+use crate::obj::{self, MtlMaterial, ObjError, ObjFile, Part};
+use crate::scene::Normals;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use vitrum_geometry::mesh::{MeshData, MeshError, TriangleMesh, flat_normals, health, mend, smooth_normals};
+
+/// What a mesh of a scene is like.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshReport {
+    /// The object that it belongs to.
+    pub object: String,
+    /// The file.
+    pub file: PathBuf,
+    /// Triangles that can be hit.
+    pub triangles: usize,
+    /// True when it encloses a volume: every edge joins two faces, in opposite directions.
+    pub closed: bool,
+    /// The volume, in cubic units of the file, when it is closed.
+    pub volume: Option<f64>,
+    /// What is wrong with it, a line each.
+    pub findings: Vec<String>,
+    /// What was mended, a line each.
+    pub mended: Vec<String>,
+    /// Bytes of memory, with its tree.
+    pub memory: usize,
+}
+
+/// A part of a file, ready to be traced.
+#[derive(Clone, Debug)]
+pub(super) struct Prepared {
+    /// The part's own name; empty in a file without names.
+    pub(super) name: String,
+    pub(super) mesh: Arc<TriangleMesh>,
+    /// What the materials that its faces number are in the file; `None` where the file names none.
+    pub(super) materials: Vec<Option<MtlMaterial>>,
+    pub(super) report: MeshReport,
+}
+
+/// All files of a scene, each read once, and each way of using one prepared once.
+#[derive(Default)]
+pub(super) struct Meshes {
+    files: BTreeMap<PathBuf, ObjFile>,
+    prepared: BTreeMap<(PathBuf, u8, Option<String>), Vec<Prepared>>,
+}
+
+/// Why a mesh can't be used.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum PrepareError {
+    #[error(transparent)]
+    File(#[from] ObjError),
+    #[error("{}: {reason}", path.display())]
+    Mesh { path: PathBuf, reason: MeshError },
+    #[error("{}: there is no object or group named `{name}`; it has {present}", path.display())]
+    NoGroup { path: PathBuf, name: String, present: String },
+}
+
+impl Meshes {
+    /// The parts of a file with the given normals, or of it the object or group of a name. `warn` takes what the file itself
+    /// gives reason to say, once per file.
+    pub(super) fn prepare(
+        &mut self,
+        path: &Path,
+        normals: Normals,
+        group: Option<&str>,
+        warn: &mut impl FnMut(&str),
+    ) -> Result<&[Prepared], PrepareError> {
+        if !self.files.contains_key(path) {
+            let file = obj::read(path)?;
+            file.warnings.iter().for_each(|w| warn(w));
+            self.files.insert(path.to_owned(), file);
+        }
+        let key = (path.to_owned(), normals as u8, group.map(str::to_owned));
+        if !self.prepared.contains_key(&key) {
+            let file = &self.files[path];
+            let parts = select(file, group).map_err(|present| PrepareError::NoGroup {
+                path: path.to_owned(),
+                name: group.unwrap_or_default().to_owned(),
+                present,
+            })?;
+            let prepared: Result<Vec<_>, _> =
+                parts.iter().map(|part| prepare(path, part, &file.materials, normals)).collect();
+            let prepared = prepared.map_err(|reason| PrepareError::Mesh { path: path.to_owned(), reason })?;
+            self.prepared.insert(key.clone(), prepared);
+        }
+        Ok(&self.prepared[&key])
+    }
+}
+
+/// The parts of a file that are used; `Err` lists the names that there are.
+fn select(file: &ObjFile, group: Option<&str>) -> Result<Vec<Part>, String> {
+    let Some(group) = group else { return Ok(file.parts.clone()) };
+    let selected: Vec<Part> = file
+        .parts
+        .iter()
+        .filter_map(|part| {
+            if part.name == group {
+                return Some(part.clone());
+            }
+            let ranges: Vec<_> =
+                part.groups.iter().filter(|g| g.name == group).map(|g| g.triangles.clone()).collect();
+            (!ranges.is_empty()).then(|| {
+                let keep = |index: usize| ranges.iter().any(|r| r.contains(&index));
+                Part { name: group.to_owned(), mesh: part_of(&part.mesh, keep), ..part.clone() }
+            })
+        })
+        .collect();
+    if selected.is_empty() {
+        let mut names: Vec<&str> = file.parts.iter().map(|p| p.name.as_str()).collect();
+        names.extend(file.parts.iter().flat_map(|p| &p.groups).map(|g| g.name.as_str()));
+        names.retain(|n| !n.is_empty());
+        names.sort_unstable();
+        names.dedup();
+        return Err(if names.is_empty() {
+            "no names at all".to_owned()
+        } else {
+            format!("`{}`", names.join("`, `"))
+        });
+    }
+    Ok(selected)
+}
+
+/// The triangles whose index passes, with all vertices.
+fn part_of(mesh: &MeshData, keep: impl Fn(usize) -> bool) -> MeshData {
+    fn kept<T: Clone>(all: &[T], keep: &impl Fn(usize) -> bool) -> Vec<T> {
+        all.iter().enumerate().filter(|(i, _)| keep(*i)).map(|(_, t)| t.clone()).collect()
+    }
+    MeshData {
+        triangles: kept(&mesh.triangles, &keep),
+        normal_triangles: kept(&mesh.normal_triangles, &keep),
+        uv_triangles: kept(&mesh.uv_triangles, &keep),
+        materials: kept(&mesh.materials, &keep),
+        ..mesh.clone()
+    }
+}
+
+fn prepare(
+    path: &Path,
+    part: &Part,
+    materials: &[MtlMaterial],
+    normals: Normals,
+) -> Result<Prepared, MeshError> {
+    let mut data = part.mesh.clone();
+    // Numbers of the file become positions in the list of those that the part uses.
+    let mut used: Vec<u32> = data.materials.clone();
+    used.sort_unstable();
+    used.dedup();
+    for number in &mut data.materials {
+        *number = used.partition_point(|u| u < number) as u32;
+    }
+    let of = |number: usize| materials.get(number).cloned();
+    let materials = if used.is_empty() {
+        vec![part.material.and_then(of)]
+    } else {
+        used.iter().map(|&u| of(u as usize)).collect()
+    };
+
+    let (data, mended) = mend(data);
+    let health = health(&data);
+    let data = match normals {
+        Normals::File => data,
+        Normals::Flat => flat_normals(data),
+        Normals::Smooth => smooth_normals(data),
+    };
+    let mesh = TriangleMesh::new(&data)?;
+    let report = MeshReport {
+        object: String::new(),
+        file: path.to_owned(),
+        triangles: mesh.triangle_count(),
+        closed: health.is_closed(),
+        volume: health.volume(),
+        findings: health.findings.iter().map(ToString::to_string).collect(),
+        mended: mended.iter().map(ToString::to_string).collect(),
+        memory: mesh.memory(),
+    };
+    Ok(Prepared { name: part.name.clone(), mesh: Arc::new(mesh), materials, report })
+}

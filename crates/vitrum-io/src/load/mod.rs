@@ -1,0 +1,126 @@
+//! From a description to a scene that can be rendered: names become values, files become meshes.
+//!
+//! ```text
+//! scene.toml --parse--> SceneDesc --lower--> Loaded { Scene, Settings, Display, .. }
+//! model.obj  --frame--> SceneDesc --lower--> ...
+//! ```
+//!
+//! Lowering goes on after a problem, so that all of them are told at once.
+
+mod lower;
+mod matter;
+mod meshes;
+mod model;
+mod naming;
+
+pub use meshes::MeshReport;
+pub use model::{ModelMaterial, ModelOptions};
+
+use crate::diagnostic::{Diagnostic, Diagnostics, Source};
+use crate::image::Display;
+use crate::obj::ObjError;
+use crate::scene::{self, SceneDesc};
+use std::path::{Path, PathBuf};
+use vitrum_tracer::{Scene, Settings};
+
+/// A scene ready to render, and what was noticed on the way.
+#[derive(Debug)]
+pub struct Loaded {
+    /// What to render.
+    pub scene: Scene,
+    /// How to render it.
+    pub settings: Settings,
+    /// How a PNG is made of the result.
+    pub display: Display,
+    /// What the meshes are like.
+    pub meshes: Vec<MeshReport>,
+    /// Names and absolute indices of the media that the scene declares or uses.
+    pub media: Vec<(String, f64)>,
+    /// Warnings.
+    pub warnings: Diagnostics,
+}
+
+/// Why there is no scene.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum LoadError {
+    /// The scene file can't be read.
+    #[error("{}: {reason}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What is the matter, and what to do.
+        reason: String,
+    },
+    /// The model can't be read.
+    #[error(transparent)]
+    Model(#[from] ObjError),
+    /// The scene has errors; all of them.
+    #[error("{0}")]
+    Invalid(Diagnostics),
+}
+
+/// Loads a scene file.
+///
+/// # Errors
+/// [`LoadError`] when the file can't be read or has errors.
+pub fn scene_file(path: &Path) -> Result<Loaded, LoadError> {
+    let unreadable = |reason: String| LoadError::Unreadable { path: path.to_owned(), reason };
+    let metadata = std::fs::metadata(path).map_err(|e| {
+        unreadable(match e.kind() {
+            std::io::ErrorKind::NotFound => "there is no such scene file; check the path".to_owned(),
+            _ => format!("cannot be read: {e}"),
+        })
+    })?;
+    if metadata.is_dir() {
+        return Err(unreadable("is a folder, expected a scene file (.toml) or a model (.obj)".to_owned()));
+    }
+    if metadata.len() > scene::MAX_BYTES as u64 {
+        let found = metadata.len();
+        return Err(unreadable(format!(
+            "has {found} bytes, a scene file may have {}; put geometry into OBJ files",
+            scene::MAX_BYTES
+        )));
+    }
+    let bytes = std::fs::read(path).map_err(|e| unreadable(format!("cannot be read: {e}")))?;
+    let text = String::from_utf8(bytes).map_err(|e| {
+        unreadable(format!("is not text in UTF-8 (first at byte {})", e.utf8_error().valid_up_to()))
+    })?;
+    let folder = path.parent().unwrap_or_else(|| Path::new(""));
+    scene_text(&path.display().to_string(), &text, folder)
+}
+
+/// Loads the text of a scene, called `name` in messages. Its files are looked for in `folder`.
+///
+/// # Errors
+/// [`LoadError::Invalid`] with all problems.
+pub fn scene_text(name: &str, text: &str, folder: &Path) -> Result<Loaded, LoadError> {
+    let (desc, diagnostics) = scene::parse(name, text);
+    match desc {
+        Some(desc) => lower::lower(&desc, &Source::new(name, text), folder, diagnostics),
+        None => Err(LoadError::Invalid(diagnostics)),
+    }
+}
+
+/// Loads a model file into a scene made for it: in the middle of the picture, on a floor, under a light.
+///
+/// # Errors
+/// [`LoadError`] when the model can't be read or has nothing to show.
+pub fn model_file(path: &Path, options: &ModelOptions) -> Result<Loaded, LoadError> {
+    let desc = model::frame(path, options)?;
+    let name = path.display().to_string();
+    lower::lower(&desc, &Source::new(&name, ""), Path::new(""), Diagnostics::default())
+}
+
+/// Loads a scene that was described in code. Its files are looked for in `folder`.
+///
+/// # Errors
+/// [`LoadError::Invalid`] with all problems.
+pub fn description(desc: &SceneDesc, folder: &Path) -> Result<Loaded, LoadError> {
+    lower::lower(desc, &Source::new("scene", ""), folder, Diagnostics::default())
+}
+
+/// A problem at a place of the source.
+fn error(source: &Source<'_>, span: crate::diagnostic::Span, message: String, label: &str) -> Diagnostic {
+    Diagnostic::error(source.name(), message).at(source, span, label)
+}
