@@ -3,6 +3,7 @@
 use crate::departure::Query;
 use crate::interaction::SurfaceInteraction;
 use crate::object::Object;
+use crate::shape::{Crossing, Sphere};
 use crate::tree::{BoxTree, UnitFrame};
 use std::ops::ControlFlow;
 use vitrum_math::Bounds;
@@ -32,30 +33,34 @@ pub struct Counters {
 }
 
 /// The nearest hit so far: the smallest (t, object, face).
-#[derive(Default)]
-pub(crate) struct Nearest(Option<Hit>);
+pub(crate) struct Nearest(Hit);
+
+impl Default for Nearest {
+    fn default() -> Self {
+        Self(Hit { t: f64::INFINITY, object: u32::MAX, face: u32::MAX, barycentrics: [0.0; 2] })
+    }
+}
 
 impl Nearest {
     /// Beyond this distance nothing is of interest.
     #[inline]
     pub(crate) fn limit(&self) -> f64 {
-        self.0.map_or(f64::INFINITY, |hit| hit.t)
+        self.0.t
     }
 
     /// What was found.
     #[inline]
     pub(crate) fn found(&self) -> Option<Hit> {
-        self.0
+        (self.0.t < f64::INFINITY).then_some(self.0)
     }
 
-    /// Takes `hit` if it comes before what stands here; true if it did.
+    /// Takes `hit`, which is finite, if it comes before what stands here; true if it did.
     #[inline]
     pub(crate) fn offer(&mut self, hit: Hit) -> bool {
-        let better = self.0.is_none_or(|best| {
-            hit.t < best.t || hit.t == best.t && (hit.object, hit.face) < (best.object, best.face)
-        });
+        let best = &self.0;
+        let better = hit.t < best.t || hit.t == best.t && (hit.object, hit.face) < (best.object, best.face);
         if better {
-            self.0 = Some(hit);
+            self.0 = hit;
         }
         better
     }
@@ -65,7 +70,9 @@ impl Nearest {
 #[derive(Clone, Debug)]
 pub struct Aggregate {
     objects: Vec<Object>,
-    /// Tried for every ray: infinite objects, and all others while they are few.
+    /// Tried for every ray, while bounded objects are few: spheres, side by side in memory.
+    spheres: Vec<(u32, Sphere)>,
+    /// Tried for every ray: infinite objects, and all others while bounded objects are few.
     flat: Vec<u32>,
     /// The rest.
     tree: Option<ObjectTree>,
@@ -87,11 +94,13 @@ impl Aggregate {
             (0u32..).zip(&objects).filter_map(|(id, o)| o.bounds().map(|b| (id, b))).collect();
         let bounds = bounded.iter().fold(Bounds::EMPTY, |all, (_, b)| all.union(*b));
         let is_flat = bounded.len() <= FLAT_LIMIT;
-        let flat = (0u32..)
-            .zip(&objects)
-            .filter(|(_, o)| is_flat || o.bounds().is_none())
-            .map(|(id, _)| id)
-            .collect();
+        let (mut spheres, mut flat) = (Vec::new(), Vec::new());
+        for (id, object) in (0u32..).zip(&objects).filter(|(_, o)| is_flat || o.bounds().is_none()) {
+            match object.as_sphere() {
+                Some(sphere) => spheres.push((id, *sphere)),
+                None => flat.push(id),
+            }
+        }
         let tree = (!is_flat).then(|| {
             let frame = UnitFrame::around(&bounds);
             let boxes = BoxTree::build(
@@ -99,7 +108,7 @@ impl Aggregate {
             );
             ObjectTree { frame, boxes, objects: bounded.iter().map(|(id, _)| *id).collect() }
         });
-        Self { objects, flat, tree, bounds }
+        Self { objects, spheres, flat, tree, bounds }
     }
 
     /// The objects, by id.
@@ -121,6 +130,12 @@ impl Aggregate {
     #[inline]
     pub fn closest(&self, query: &Query, counters: &mut Counters) -> Option<Hit> {
         let mut nearest = Nearest::default();
+        for (id, sphere) in &self.spheres {
+            let Crossing { t, face } = query.first(sphere.crossings(&query.ray, query.face_left(*id)), *id);
+            if t <= nearest.limit() && t < f64::INFINITY {
+                nearest.offer(Hit { t, object: *id, face, barycentrics: [0.0; 2] });
+            }
+        }
         for &id in &self.flat {
             self.objects[id as usize].closest(query, id, &mut nearest, counters);
         }
@@ -139,6 +154,12 @@ impl Aggregate {
     /// True when anything is hit nearer than `limit` metres.
     #[inline]
     pub fn occluded(&self, query: &Query, limit: f64, counters: &mut Counters) -> bool {
+        let blocks = |(id, sphere): &(u32, Sphere)| {
+            query.first(sphere.crossings(&query.ray, query.face_left(*id)), *id).t < limit
+        };
+        if self.spheres.iter().any(blocks) {
+            return true;
+        }
         if self.flat.iter().any(|&id| self.objects[id as usize].any(query, id, limit, counters)) {
             return true;
         }

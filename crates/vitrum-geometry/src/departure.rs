@@ -1,5 +1,6 @@
 //! A ray with its history: where it started, and what it has passed.
 
+use crate::shape::{Crossing, Crossings, Leaving};
 use vitrum_math::Ray;
 
 /// The surface that a ray starts on.
@@ -52,6 +53,24 @@ impl Query {
     pub(crate) fn admits(&self, t: f64, object: u32, face: u32) -> bool {
         let (passed, passed_object, passed_face) = self.passed;
         t >= 0.0 && (t > passed || t == passed && (object, face) > (passed_object, passed_face))
+    }
+
+    /// The first of the crossings of `object` that counts; at infinity when none does.
+    #[inline]
+    pub(crate) fn first(&self, Crossings([near, far]): Crossings, object: u32) -> Crossing {
+        if self.admits(near.t, object, near.face) {
+            near
+        } else if self.admits(far.t, object, far.face) {
+            far
+        } else {
+            Crossing::MISSING
+        }
+    }
+
+    /// The face and side of an analytic `object` that the ray leaves, if it leaves that object.
+    #[inline]
+    pub(crate) fn face_left(&self, object: u32) -> Option<Leaving> {
+        self.departed_from(object).map(|d| Leaving { face: d.face, behind: d.behind })
     }
 
     /// The departure, when it is from `object`.

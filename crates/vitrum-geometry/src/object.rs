@@ -4,7 +4,7 @@ use crate::aggregate::{Counters, Hit, Nearest};
 use crate::departure::Query;
 use crate::interaction::SurfaceInteraction;
 use crate::mesh::{MeshPoint, TriangleMesh};
-use crate::shape::{Crossings, Leaving, Plane, Rectangle, Shape, ShapeError, Sphere, SurfacePoint};
+use crate::shape::{Crossing, Plane, Rectangle, Shape, ShapeError, Sphere, SurfacePoint};
 use vitrum_math::{Bounds, Ray, Transform, unit};
 
 /// A shape with its transform and orientation.
@@ -51,6 +51,14 @@ impl Object {
         &self.shape
     }
 
+    /// The sphere, when the object is one that needs no transform.
+    pub(crate) fn as_sphere(&self) -> Option<&Sphere> {
+        match (&self.shape, &self.transform) {
+            (Shape::Sphere(sphere), None) => Some(sphere),
+            _ => None,
+        }
+    }
+
     /// The number of the material of a face; 0 unless the shape is a mesh with several.
     #[inline]
     pub fn material_of(&self, face: u32) -> u32 {
@@ -66,17 +74,20 @@ impl Object {
         Some(self.transform.as_ref().map_or(own, |t| t.world_bounds(&own)))
     }
 
+    /// Hands on the ray in the frame of the shape.
     #[inline]
-    fn local_ray(&self, ray: &Ray) -> Ray {
+    fn in_own_frame<T>(&self, ray: &Ray, then: impl FnOnce(&Ray) -> T) -> T {
         match &self.transform {
-            None => *ray,
-            Some(t) => Ray::new(t.object_point(ray.origin), t.object_vector(ray.direction)),
+            None => then(ray),
+            Some(t) => then(&Ray::new(t.object_point(ray.origin), t.object_vector(ray.direction))),
         }
     }
 
+    /// The first crossing of an analytic shape that counts; at infinity when there is none.
     #[inline]
-    fn crossings(&self, ray: &Ray, leaving: Option<Leaving>) -> Crossings {
-        match &self.shape {
+    fn first(&self, ray: &Ray, query: &Query, id: u32) -> Crossing {
+        let leaving = query.face_left(id);
+        let crossings = match &self.shape {
             Shape::Sphere(s) => s.crossings(ray, leaving),
             Shape::Plane(s) => s.crossings(ray, leaving),
             Shape::Disk(s) => s.crossings(ray, leaving),
@@ -84,58 +95,54 @@ impl Object {
             Shape::Cuboid(s) => s.crossings(ray, leaving),
             Shape::Cylinder(s) => s.crossings(ray, leaving),
             Shape::Mesh(_) => unreachable!("meshes search their own tree"),
-        }
-    }
-
-    /// The first crossing of an analytic shape that counts.
-    #[inline]
-    fn first(&self, query: &Query, id: u32) -> Option<Hit> {
-        let leaving = query.departed_from(id).map(|d| Leaving { face: d.face, behind: d.behind });
-        let Crossings(crossings) = self.crossings(&self.local_ray(&query.ray), leaving);
-        let first = crossings.iter().find(|c| c.t < f64::INFINITY && query.admits(c.t, id, c.face))?;
-        Some(Hit { t: first.t, object: id, face: first.face, barycentrics: [0.0; 2] })
+        };
+        query.first(crossings, id)
     }
 
     /// Offers the first hit that counts.
     #[inline]
     pub(crate) fn closest(&self, query: &Query, id: u32, nearest: &mut Nearest, counters: &mut Counters) {
-        if let Shape::Mesh(mesh) = &self.shape {
-            mesh.closest(&self.local_ray(&query.ray), query, id, nearest, counters);
-        } else if let Some(hit) = self.first(query, id) {
-            nearest.offer(hit);
-        }
+        self.in_own_frame(&query.ray, |ray| {
+            if let Shape::Mesh(mesh) = &self.shape {
+                mesh.closest(ray, query, id, nearest, counters);
+            } else {
+                let Crossing { t, face } = self.first(ray, query, id);
+                if t <= nearest.limit() && t < f64::INFINITY {
+                    nearest.offer(Hit { t, object: id, face, barycentrics: [0.0; 2] });
+                }
+            }
+        });
     }
 
     /// True when something of it is hit nearer than `limit`.
     #[inline]
     pub(crate) fn any(&self, query: &Query, id: u32, limit: f64, counters: &mut Counters) -> bool {
-        if let Shape::Mesh(mesh) = &self.shape {
-            mesh.any(&self.local_ray(&query.ray), query, id, limit, counters)
-        } else {
-            self.first(query, id).is_some_and(|hit| hit.t < limit)
-        }
+        self.in_own_frame(&query.ray, |ray| match &self.shape {
+            Shape::Mesh(mesh) => mesh.any(ray, query, id, limit, counters),
+            _ => self.first(ray, query, id).t < limit,
+        })
     }
 
     /// The point of a hit.
     #[inline]
     pub(crate) fn interaction(&self, query: &Query, hit: &Hit) -> SurfaceInteraction {
-        let ray = self.local_ray(&query.ray);
         let mut shading = None;
         let mut error = 0.0;
-        let SurfacePoint { mut point, normal: mut ng } = match &self.shape {
-            Shape::Sphere(s) => s.surface_point(&ray, hit.t),
-            Shape::Plane(s) => s.surface_point(&ray, hit.t),
-            Shape::Disk(s) => s.surface_point(&ray, hit.t),
-            Shape::Rectangle(s) => s.surface_point(&ray, hit.t),
-            Shape::Cuboid(s) => s.surface_point(&ray, hit.t, hit.face),
-            Shape::Cylinder(s) => s.surface_point(&ray, hit.t, hit.face),
-            Shape::Mesh(mesh) => {
-                let p = mesh.point(hit.face, hit.barycentrics);
-                error = self.origin_error(mesh, &p);
-                shading = mesh.is_smooth().then_some(p.ns);
-                SurfacePoint { point: p.point, normal: p.ng }
-            }
-        };
+        let SurfacePoint { mut point, normal: mut ng } =
+            self.in_own_frame(&query.ray, |ray| match &self.shape {
+                Shape::Sphere(s) => s.surface_point(ray, hit.t),
+                Shape::Plane(s) => s.surface_point(ray, hit.t),
+                Shape::Disk(s) => s.surface_point(ray, hit.t),
+                Shape::Rectangle(s) => s.surface_point(ray, hit.t),
+                Shape::Cuboid(s) => s.surface_point(ray, hit.t, hit.face),
+                Shape::Cylinder(s) => s.surface_point(ray, hit.t, hit.face),
+                Shape::Mesh(mesh) => {
+                    let p = mesh.point(hit.face, hit.barycentrics);
+                    error = self.origin_error(mesh, &p);
+                    shading = mesh.is_smooth().then_some(p.ns);
+                    SurfacePoint { point: p.point, normal: p.ng }
+                }
+            });
         if let Some(t) = &self.transform {
             point = t.world_point(point);
             ng = unit(t.world_normal(ng));

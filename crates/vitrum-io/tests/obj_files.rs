@@ -87,7 +87,7 @@ fn check_indices(part: &obj::Part) -> Result<(), String> {
         ("normal indices", in_range(&mesh.normal_triangles, mesh.normals.len())),
         ("uv indices", in_range(&mesh.uv_triangles, mesh.uvs.len())),
         ("lengths", fits(mesh.normal_triangles.len()) && fits(mesh.uv_triangles.len())),
-        ("materials", fits(part.face_materials.len())),
+        ("materials", fits(part.mesh.materials.len())),
         ("groups", part.groups.iter().all(|group| group.triangles.end <= count)),
         ("positions", mesh.positions.iter().all(|position| position.is_finite())),
         ("normals", mesh.normals.iter().all(|normal| normal.is_finite() && normal.length() > 0.0)),
@@ -324,7 +324,7 @@ fn libraries_are_read_beside_the_file() {
     let file = obj::read(&folder.path().join("m.obj")).expect("loads");
     let names: Vec<_> = file.materials.iter().map(|material| material.name.as_str()).collect();
     assert_eq!(names, ["clear", "a", "b"]);
-    assert_eq!(file.parts[0].face_materials, [0, 2]);
+    assert_eq!(file.parts[0].mesh.materials, [0, 2]);
     assert_eq!(file.warnings.len(), 1);
     assert!(file.warnings[0].contains("`sub` (line 3) cannot be read: not a file"), "{}", file.warnings[0]);
 }

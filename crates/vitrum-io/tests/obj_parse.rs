@@ -145,7 +145,7 @@ fn a_solid_of_several_materials_stays_in_one_piece() {
     assert_eq!((file.parts.len(), part.mesh.positions.len(), part.mesh.triangles.len()), (1, 4, 4));
     let names: Vec<_> = file.materials.iter().map(|m| (m.name.as_str(), m.is_defined)).collect();
     assert_eq!(names, [("b", true), ("a", false), ("", false)]);
-    assert_eq!((&part.face_materials[..], part.material), (&[2, 1, 0, 1][..], None));
+    assert_eq!((&part.mesh.materials[..], part.material), (&[2, 1, 0, 1][..], None));
     assert!(
         only_warning(&file)
             .contains("materials used but not defined, taken as plain grey: 1 (first `a` at line 6)")

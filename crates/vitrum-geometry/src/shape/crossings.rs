@@ -23,7 +23,8 @@ pub struct Leaving {
 }
 
 impl Crossing {
-    const MISSING: Self = Self { t: f64::INFINITY, face: 0 };
+    /// No crossing.
+    pub(crate) const MISSING: Self = Self { t: f64::INFINITY, face: 0 };
 }
 
 impl Crossings {

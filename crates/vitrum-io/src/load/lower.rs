@@ -29,11 +29,12 @@ struct Lowering<'a> {
     reports: Vec<MeshReport>,
 }
 
-/// Lowers a description; `problems` are those that reading it has found.
+/// Lowers a description; `meshes` holds files that have been read already, `problems` those that reading it has found.
 pub(super) fn lower(
     desc: &SceneDesc,
     source: &Source<'_>,
     folder: &Path,
+    meshes: Meshes,
     problems: Diagnostics,
 ) -> Result<Loaded, LoadError> {
     let mut lowering = Lowering {
@@ -41,7 +42,7 @@ pub(super) fn lower(
         source,
         folder,
         matter: Matter::new(desc),
-        meshes: Meshes::default(),
+        meshes,
         names: Names::default(),
         problems,
         objects: Vec::new(),

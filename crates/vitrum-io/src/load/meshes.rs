@@ -42,7 +42,8 @@ pub(super) struct Prepared {
 /// All files of a scene, each read once, and each way of using one prepared once.
 #[derive(Default)]
 pub(super) struct Meshes {
-    files: BTreeMap<PathBuf, ObjFile>,
+    /// Each with whether its warnings are still to be told.
+    files: BTreeMap<PathBuf, (ObjFile, bool)>,
     prepared: BTreeMap<(PathBuf, u8, Option<String>), Vec<Prepared>>,
 }
 
@@ -58,6 +59,11 @@ pub(super) enum PrepareError {
 }
 
 impl Meshes {
+    /// With a file that has been read already.
+    pub(super) fn holding(path: &Path, file: ObjFile) -> Self {
+        Self { files: BTreeMap::from([(path.to_owned(), (file, true))]), ..Self::default() }
+    }
+
     /// The parts of a file with the given normals, or of it the object or group of a name. `warn` takes what the file itself
     /// gives reason to say, once per file.
     pub(super) fn prepare(
@@ -68,13 +74,16 @@ impl Meshes {
         warn: &mut impl FnMut(&str),
     ) -> Result<&[Prepared], PrepareError> {
         if !self.files.contains_key(path) {
-            let file = obj::read(path)?;
+            self.files.insert(path.to_owned(), (obj::read(path)?, true));
+        }
+        if let Some((file, is_new)) = self.files.get_mut(path)
+            && std::mem::take(is_new)
+        {
             file.warnings.iter().for_each(|w| warn(w));
-            self.files.insert(path.to_owned(), file);
         }
         let key = (path.to_owned(), normals as u8, group.map(str::to_owned));
         if !self.prepared.contains_key(&key) {
-            let file = &self.files[path];
+            let (file, _) = &self.files[path];
             let parts = select(file, group).map_err(|present| PrepareError::NoGroup {
                 path: path.to_owned(),
                 name: group.unwrap_or_default().to_owned(),

@@ -14,11 +14,12 @@ mod model;
 mod naming;
 
 pub use meshes::MeshReport;
+use meshes::Meshes;
 pub use model::{ModelMaterial, ModelOptions};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Source};
 use crate::image::Display;
-use crate::obj::ObjError;
+use crate::obj::{self, ObjError};
 use crate::scene::{self, SceneDesc};
 use std::path::{Path, PathBuf};
 use vitrum_tracer::{Scene, Settings};
@@ -97,7 +98,7 @@ pub fn scene_file(path: &Path) -> Result<Loaded, LoadError> {
 pub fn scene_text(name: &str, text: &str, folder: &Path) -> Result<Loaded, LoadError> {
     let (desc, diagnostics) = scene::parse(name, text);
     match desc {
-        Some(desc) => lower::lower(&desc, &Source::new(name, text), folder, diagnostics),
+        Some(desc) => lower::lower(&desc, &Source::new(name, text), folder, Meshes::default(), diagnostics),
         None => Err(LoadError::Invalid(diagnostics)),
     }
 }
@@ -107,9 +108,11 @@ pub fn scene_text(name: &str, text: &str, folder: &Path) -> Result<Loaded, LoadE
 /// # Errors
 /// [`LoadError`] when the model can't be read or has nothing to show.
 pub fn model_file(path: &Path, options: &ModelOptions) -> Result<Loaded, LoadError> {
-    let desc = model::frame(path, options)?;
+    let file = obj::read(path)?;
+    let desc = model::frame(path, &file, options);
     let name = path.display().to_string();
-    lower::lower(&desc, &Source::new(&name, ""), Path::new(""), Diagnostics::default())
+    let files = Meshes::holding(path, file);
+    lower::lower(&desc, &Source::new(&name, ""), Path::new(""), files, Diagnostics::default())
 }
 
 /// Loads a scene that was described in code. Its files are looked for in `folder`.
@@ -117,7 +120,7 @@ pub fn model_file(path: &Path, options: &ModelOptions) -> Result<Loaded, LoadErr
 /// # Errors
 /// [`LoadError::Invalid`] with all problems.
 pub fn description(desc: &SceneDesc, folder: &Path) -> Result<Loaded, LoadError> {
-    lower::lower(desc, &Source::new("scene", ""), folder, Diagnostics::default())
+    lower::lower(desc, &Source::new("scene", ""), folder, Meshes::default(), Diagnostics::default())
 }
 
 /// A problem at a place of the source.

@@ -1,6 +1,5 @@
 //! A scene around a model: in the middle of the picture, on a checkered floor, under a light and a pale sky.
 
-use super::LoadError;
 use crate::diagnostic::Span;
 use crate::obj::{self, ObjFile};
 use crate::scene::{
@@ -41,10 +40,9 @@ impl Default for ModelOptions {
 /// Vertical field of view, degrees: a short telephoto.
 const FOV: f64 = 30.0;
 
-/// The description of a scene that shows the model.
-pub(super) fn frame(path: &Path, options: &ModelOptions) -> Result<SceneDesc, LoadError> {
-    let file = obj::read(path)?;
-    let bounds = bounds(&file);
+/// The description of a scene that shows the model `file`, which was read from `path`.
+pub(super) fn frame(path: &Path, file: &ObjFile, options: &ModelOptions) -> SceneDesc {
+    let bounds = bounds(file);
     let (centre, size) = (bounds.centre(), bounds.extent().length().max(1e-12));
     // The bounding sphere touches the picture's top and bottom, with a margin.
     let distance = 0.5 * size / libm::sin(0.5 * FOV.to_radians()) * 0.95;
@@ -81,8 +79,8 @@ pub(super) fn frame(path: &Path, options: &ModelOptions) -> Result<SceneDesc, Lo
             axes: [true, false, true],
         },
     }];
-    desc.objects = vec![model(path, &file, options), floor(&bounds)];
-    Ok(desc)
+    desc.objects = vec![model(path, file, options), floor(&bounds)];
+    desc
 }
 
 fn model(path: &Path, file: &ObjFile, options: &ModelOptions) -> Object {

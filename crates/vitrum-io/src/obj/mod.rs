@@ -60,12 +60,11 @@ pub struct ObjFile {
 pub struct Part {
     /// Name given by `o`; empty for the faces before the first.
     pub name: String,
-    /// Its triangles. Not checked: it may be open, inside out or degenerate.
+    /// Its triangles. Not checked: it may be open, inside out or degenerate. Where the part has several materials, its
+    /// triangles number them as in [`ObjFile::materials`].
     pub mesh: MeshData,
     /// The material of all its faces, in [`ObjFile::materials`]; `None` if the file names none, or several.
     pub material: Option<usize>,
-    /// The material of each triangle, in [`ObjFile::materials`]; empty unless the part has several.
-    pub face_materials: Vec<u32>,
     /// Its groups in the order of their triangles; one that was left and entered again is there twice.
     pub groups: Vec<Group>,
 }
@@ -134,7 +133,7 @@ pub fn parse(
     let material_of = find_materials(&scan, &mut materials, &mut warnings);
     let unnamed = materials.len();
     let assembly = parts::assemble(&scan, model, &material_of, unnamed);
-    if assembly.parts.iter().any(|part| part.face_materials.contains(&(unnamed as u32))) {
+    if assembly.parts.iter().any(|part| part.mesh.materials.contains(&(unnamed as u32))) {
         materials.push(MtlMaterial::undefined(""));
     }
     say_what_was_passed_over(&scan, &assembly, &mut warnings);

@@ -69,7 +69,7 @@ fn set_materials(unpainted: &mut Unpainted, runs: &[RunOfFaces<'_>], material_of
     for ((run, _), &end) in runs.iter().zip(&unpainted.run_ends) {
         let material = run.kind.material.map_or(unnamed, |material| material_of[material]);
         let material = u32::try_from(material).expect("a file of 4 GiB names fewer materials");
-        part.face_materials.resize(end, material);
+        part.mesh.materials.resize(end, material);
     }
 }
 
@@ -115,13 +115,7 @@ impl Assembler<'_> {
             let names = self.scan.groups.list[group].0.split_ascii_whitespace();
             names.map(move |name| Group { name: name.to_owned(), triangles: triangles.clone() })
         });
-        let part = Part {
-            name: name.to_owned(),
-            mesh: data,
-            material: None,
-            face_materials: Vec::new(),
-            groups: groups.collect(),
-        };
+        let part = Part { name: name.to_owned(), mesh: data, material: None, groups: groups.collect() };
         Unpainted { part, run_ends }
     }
 
