@@ -1,17 +1,41 @@
 //! The command line.
 
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use vitrum_io::load::{ModelMaterial, ModelOptions};
 use vitrum_io::scene::Normals;
 use vitrum_tracer::Crop;
 
 /// Renders glass, accurately and fast.
 #[derive(Debug, Parser)]
-#[command(version, arg_required_else_help = true)]
+#[command(name = "vitrum", version, arg_required_else_help = true)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
+}
+
+impl Arguments {
+    /// The command line; ends the program when that is wrong, or asks for help.
+    pub(crate) fn read() -> Self {
+        Self::try_parse().unwrap_or_else(|mut error| {
+            if let Some(tip) = tip(&error) {
+                error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+            }
+            error.exit()
+        })
+    }
+}
+
+/// A scene in the place of a command is one that somebody wants rendered.
+fn tip(error: &clap::Error) -> Option<String> {
+    let (ErrorKind::InvalidSubcommand, Some(ContextValue::String(name))) =
+        (error.kind(), error.get(ContextKind::InvalidSubcommand))
+    else {
+        return None;
+    };
+    let extension = Path::new(name).extension()?.to_str()?;
+    matches!(extension, "toml" | "obj").then(|| format!("to render it: vitrum render {name}"))
 }
 
 #[derive(Debug, Subcommand)]
@@ -34,15 +58,15 @@ pub(crate) struct Render {
     pub(crate) output: PathBuf,
 
     /// Samples per pixel, in place of the scene's
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), allow_negative_numbers = true)]
     pub(crate) spp: Option<u32>,
 
     /// Deepest ray of a tree, in place of the scene's; the camera ray has depth 0
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1000))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1000), allow_negative_numbers = true)]
     pub(crate) max_depth: Option<u32>,
 
     /// Weight below which subtrees are given up, in place of the scene's (0 to 1)
-    #[arg(long, value_name = "W", value_parser = unit_interval)]
+    #[arg(long, value_name = "W", value_parser = unit_interval, allow_negative_numbers = true)]
     pub(crate) cutoff: Option<f64>,
 
     /// Size of the picture in pixels, in place of the scene's
@@ -54,15 +78,15 @@ pub(crate) struct Render {
     pub(crate) crop: Option<Crop>,
 
     /// Seed of all random numbers, in place of the scene's
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) seed: Option<u64>,
 
-    /// Threads; 0 for as many as the machine has. The picture does not depend on it
-    #[arg(short, long, value_name = "N", default_value_t = 0)]
-    pub(crate) threads: usize,
+    /// Threads, at most 1024; 0 for as many as the machine has. The picture does not depend on it
+    #[arg(short, long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1024), allow_negative_numbers = true)]
+    pub(crate) threads: u32,
 
     /// Edge of the squares that threads work on, in pixels. The picture does not depend on it
-    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=4096), allow_negative_numbers = true)]
     pub(crate) tile: u32,
 
     /// No progress, no warnings, no summary
@@ -91,7 +115,7 @@ pub(crate) struct Model {
     pub(crate) material: Option<MaterialChoice>,
 
     /// Index of refraction of the glass, inside over outside [default: 1.5]
-    #[arg(long, value_name = "N", value_parser = index)]
+    #[arg(long, value_name = "N", value_parser = index, allow_negative_numbers = true)]
     pub(crate) ior: Option<f64>,
 
     /// Normals that the model is shaded with [default: the file's, else smooth]
@@ -123,6 +147,11 @@ impl Model {
     /// True when something was asked for that only a model has.
     pub(crate) fn is_given(&self) -> bool {
         self.material.is_some() || self.ior.is_some() || self.normals.is_some()
+    }
+
+    /// True when an index of refraction was asked for and no glass.
+    pub(crate) fn has_idle_index(&self) -> bool {
+        self.ior.is_some() && !matches!(self.material, None | Some(MaterialChoice::Glass))
     }
 
     pub(crate) fn options(&self) -> ModelOptions {

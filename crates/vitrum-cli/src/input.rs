@@ -12,7 +12,16 @@ const DEFAULT_SCENE: &str = include_str!("../../../scenes/default.toml");
 pub(crate) fn load(path: Option<&Path>, model: &Model) -> Result<Loaded, Failure> {
     let extension = path.and_then(Path::extension).map(|e| e.to_string_lossy().to_ascii_lowercase());
     match (path, extension.as_deref()) {
+        (Some(_), Some("obj")) if model.has_idle_index() => Err(Failure::usage(
+            "--ior is the index of refraction of --material glass; leave it out with matte and file",
+        )),
         (Some(path), Some("obj")) => Ok(load::model_file(path, &model.options())?),
+        // Scenes may come through a pipe, whose name has no extension.
+        (Some(path), Some(other)) if other != "toml" => Err(Failure::usage(format!(
+            "{}: found the extension .{other}, expected .toml (a scene) or .obj (a model); export a model of another format \
+             as OBJ",
+            path.display()
+        ))),
         _ if model.is_given() => Err(Failure::usage(
             "--material, --ior and --normals are for models (.obj); a scene says so itself",
         )),

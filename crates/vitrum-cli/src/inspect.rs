@@ -3,19 +3,20 @@
 use crate::args::Inspect;
 use crate::failure::Failure;
 use crate::input;
+use crate::terminal;
 use std::fmt::Write;
 use std::process::ExitCode;
 use vitrum_io::load::{Loaded, MeshReport};
 use vitrum_materials::{Material, Phong, Texture};
 use vitrum_math::{DVec3, Rgb};
-use vitrum_tracer::{Light, Plan, Projection};
+use vitrum_tracer::{Falloff, Light, Plan, Projection};
 
 pub(crate) fn run(arguments: &Inspect) -> Result<ExitCode, Failure> {
     let loaded = input::load(arguments.scene.as_deref(), &arguments.model)?;
     let mut report = String::new();
     // Writing to a String can't fail.
     let _ = describe(&mut report, &loaded);
-    print!("{report}");
+    terminal::answer(&report)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -25,8 +26,11 @@ fn describe(out: &mut String, loaded: &Loaded) -> std::fmt::Result {
     let [width, height] = settings.size;
     writeln!(
         out,
-        "picture    {width} x {height}, {} samples per pixel, depth {}, cut-off {}, seed {}",
-        settings.spp, settings.max_depth, settings.cutoff, settings.seed
+        "picture    {width} x {height}, {} per pixel, depth {}, cut-off {}, seed {}",
+        count(settings.spp as usize, "sample"),
+        settings.max_depth,
+        settings.cutoff,
+        settings.seed
     )?;
     let projection = match *scene.camera.projection() {
         Projection::Pinhole { fov } => format!("pinhole, {:.3}° high", fov.to_degrees()),
@@ -61,7 +65,7 @@ fn describe(out: &mut String, loaded: &Loaded) -> std::fmt::Result {
 fn objects(out: &mut String, loaded: &Loaded) -> std::fmt::Result {
     let scene = &loaded.scene;
     let names = scene.names();
-    writeln!(out, "{} objects", names.len() + scene.invisible().len())?;
+    writeln!(out, "{}", count(names.len() + scene.invisible().len(), "object"))?;
     for (id, (name, object)) in (0u32..).zip(names.iter().zip(scene.aggregate().objects())) {
         let materials: Vec<String> = scene.materials_of(id).iter().map(describe_material).collect();
         writeln!(out, "  {name}: {}, {}", object.shape().name(), materials.join("; "))?;
@@ -85,10 +89,10 @@ fn describe_mesh(out: &mut String, mesh: &MeshReport) -> std::fmt::Result {
     };
     writeln!(
         out,
-        "    {}: {} triangles, {solid}, {:.1} MB",
+        "    {}: {}, {solid}, {:.1} kB",
         mesh.file.display(),
-        mesh.triangles,
-        mesh.memory as f64 / 1e6
+        count(mesh.triangles, "triangle"),
+        mesh.memory as f64 / 1e3
     )?;
     for finding in &mesh.findings {
         writeln!(out, "    found: {finding}")?;
@@ -102,7 +106,6 @@ fn describe_mesh(out: &mut String, mesh: &MeshReport) -> std::fmt::Result {
 /// A line for each feature: used or skipped.
 fn plan(out: &mut String, plan: &Plan, loaded: &Loaded) -> std::fmt::Result {
     writeln!(out, "\nplan")?;
-    let count = |n: usize, what: &str| if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") };
     let objects = loaded.scene.names().len();
     let rows: [(&str, bool, String); 11] = [
         (
@@ -115,7 +118,7 @@ fn plan(out: &mut String, plan: &Plan, loaded: &Loaded) -> std::fmt::Result {
         ("refraction", plan.dielectrics, "trees of rays".to_owned()),
         ("mirrors", plan.mirrors, "reflected rays".to_owned()),
         ("textures", plan.textures, "looked up at each hit".to_owned()),
-        ("meshes", plan.meshes > 0, count(plan.meshes, "mesh tree").replace("meshs", "meshes")),
+        ("meshes", plan.meshes > 0, count(plan.meshes, "mesh tree")),
         ("smooth normals", plan.smooth_normals, "interpolated at each hit".to_owned()),
         ("object tree", plan.object_tree, format!("over {}", count(objects, "object"))),
         ("lens", plan.lens, "a point of it for each sample".to_owned()),
@@ -134,7 +137,11 @@ fn plan(out: &mut String, plan: &Plan, loaded: &Loaded) -> std::fmt::Result {
 fn describe_light(light: &Light) -> String {
     match light {
         Light::Point { position, intensity, falloff, .. } => {
-            format!("point at {}, intensity {}, {falloff:?}", point(*position), colour(*intensity))
+            let falloff = match falloff {
+                Falloff::InverseSquare => "falls off with the square of the distance",
+                Falloff::None => "no falloff",
+            };
+            format!("point at {}, intensity {}, {falloff}", point(*position), colour(*intensity))
         }
         Light::Directional { towards, irradiance, .. } => {
             format!("from direction {}, irradiance {}", point(*towards), colour(*irradiance))
@@ -170,6 +177,11 @@ fn texture(texture: &Texture) -> String {
         Texture::Constant(c) => colour(*c),
         Texture::Checker(c) => format!("checker {} / {}, {} m", colour(c.even), colour(c.odd), c.size),
     }
+}
+
+/// So many of something whose plural ends in s.
+fn count(n: usize, what: &str) -> String {
+    if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") }
 }
 
 fn colour(c: Rgb) -> String {

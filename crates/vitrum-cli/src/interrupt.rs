@@ -1,5 +1,8 @@
-//! ^C and termination: asked to stop once, the program ends the work in hand and keeps the picture; asked twice, it ends
-//! at once.
+//! ^C and termination: asked to stop once, the program ends the work in hand and keeps the picture; asked again, by the
+//! same signal or the other, it ends at once.
+//!
+//! A limit on the size of files raises a signal too, whose default is to end the program in mid-writing. Here it is
+//! caught, so that the write fails like any other and the half-written file is cleared away.
 
 use crate::failure::Failure;
 use std::process::ExitCode;
@@ -19,15 +22,19 @@ impl Interrupt {
     /// Starts listening.
     pub(crate) fn listen() -> Result<Self, Failure> {
         let signal = Arc::new(AtomicUsize::new(0));
-        for number in [SIGINT, SIGTERM] {
-            let again = Arc::new(AtomicBool::new(false));
-            // The order counts: a second signal finds the flag that the first one raised.
-            flag::register_conditional_shutdown(number, 128 + number, Arc::clone(&again))
-                .map_err(Failure::running)?;
-            flag::register(number, again).map_err(Failure::running)?;
-            flag::register_usize(number, Arc::clone(&signal), number.cast_unsigned() as usize)
-                .map_err(Failure::running)?;
-        }
+        let again = Arc::new(AtomicBool::new(false));
+        let register = || {
+            for number in [SIGINT, SIGTERM] {
+                // The order counts: a second signal finds the flag that the first one raised.
+                flag::register_conditional_shutdown(number, 128 + number, Arc::clone(&again))?;
+                flag::register(number, Arc::clone(&again))?;
+                flag::register_usize(number, Arc::clone(&signal), number.cast_unsigned() as usize)?;
+            }
+            #[cfg(unix)]
+            flag::register(signal_hook::consts::SIGXFSZ, Arc::default())?;
+            Ok(())
+        };
+        register().map_err(|e: std::io::Error| Failure::running(format!("cannot listen for ^C ({e})")))?;
         Ok(Self { signal })
     }
 

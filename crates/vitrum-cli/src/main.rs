@@ -2,11 +2,6 @@
 //!
 //! Exit codes: 0 done, 1 failed while running (a retry may help), 2 usage or scene error, 3 internal error, 130 or 143
 //! stopped by ^C or a termination signal, with the picture kept.
-#![expect(
-    clippy::print_stdout,
-    clippy::print_stderr,
-    reason = "this is the program that talks to the terminal"
-)]
 
 mod args;
 mod failure;
@@ -16,28 +11,26 @@ mod interrupt;
 mod progress;
 mod render;
 mod summary;
+mod terminal;
 
 use args::{Arguments, Command};
-use clap::Parser;
+use failure::Failure;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
-    let outcome = match &arguments.command {
-        Command::Render(render) => render::run(render),
-        Command::Inspect(inspect) => inspect::run(inspect),
-    };
-    match outcome {
-        Ok(code) => code,
-        Err(failure) => {
-            let text = failure.to_string();
-            // Diagnostics bring their own severity and line ends.
-            if text.starts_with("error") {
-                eprint!("{text}");
-            } else {
-                eprintln!("error: {}", text.trim_end());
-            }
-            failure.code()
-        }
+    let arguments = Arguments::read();
+    // The message of the panic has been printed; what is left is the exit code.
+    let outcome =
+        std::panic::catch_unwind(|| run(&arguments.command)).unwrap_or_else(|_| Err(Failure::internal()));
+    outcome.unwrap_or_else(|failure| {
+        terminal::say(&failure.to_string());
+        failure.code()
+    })
+}
+
+fn run(command: &Command) -> Result<ExitCode, Failure> {
+    match command {
+        Command::Render(arguments) => render::run(arguments),
+        Command::Inspect(arguments) => inspect::run(arguments),
     }
 }

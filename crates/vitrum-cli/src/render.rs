@@ -6,11 +6,12 @@ use crate::input;
 use crate::interrupt::Interrupt;
 use crate::progress::Watcher;
 use crate::summary::{Phases, summary};
+use crate::terminal::say;
 use std::process::ExitCode;
 use std::time::Instant;
 use vitrum_io::image::{self, ImageView};
 use vitrum_io::load::Loaded;
-use vitrum_tracer::{Settings, ShadowMode, render};
+use vitrum_tracer::{RenderError, Settings, ShadowMode, render};
 
 /// The clock of the program: the libraries have none.
 #[expect(clippy::disallowed_methods, reason = "the program shows how long it takes")]
@@ -25,7 +26,7 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
     let interrupt = Interrupt::listen()?;
     let loaded = input::load(arguments.scene.as_deref(), &arguments.model)?;
     if !arguments.quiet {
-        eprint!("{}", loaded.warnings);
+        say(&loaded.warnings.to_string());
     }
     let settings = settings(&loaded, arguments);
     let loading = start.elapsed();
@@ -33,9 +34,15 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
     let area = settings.area();
     let samples = u64::from(area.width) * u64::from(area.height) * u64::from(settings.spp);
     let watcher = Watcher::new(samples, arguments.quiet, interrupt.clone());
-    let rendering = render(&loaded.scene, &settings, &watcher)?;
+    let rendering = render(&loaded.scene, &settings, &watcher).map_err(|e| explain(e, &settings))?;
     watcher.finish();
     let rendering_time = watcher.elapsed();
+    if rendering.stats.samples == 0 {
+        if !arguments.quiet {
+            say(&format!("stopped before the first sample; {} is as it was\n", arguments.output.display()));
+        }
+        return Ok(interrupt.code());
+    }
 
     let writing = now();
     let pixels = rendering.film.image();
@@ -49,7 +56,7 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
     let phases = Phases { loading, rendering: rendering_time, writing: writing.elapsed() };
 
     if !arguments.quiet {
-        eprint!("{}", summary(&rendering, &phases, &arguments.output));
+        say(&summary(&rendering, &phases, &arguments.output));
     }
     Ok(if rendering.complete { ExitCode::SUCCESS } else { interrupt.code() })
 }
@@ -63,10 +70,21 @@ fn settings(loaded: &Loaded, arguments: &Render) -> Settings {
         max_depth: arguments.max_depth.unwrap_or(scene.max_depth),
         cutoff: arguments.cutoff.unwrap_or(scene.cutoff),
         seed: arguments.seed.unwrap_or(scene.seed),
-        threads: arguments.threads,
+        threads: arguments.threads as usize,
         tile: arguments.tile,
         ..*scene
     }
+}
+
+/// The failure behind an error, in terms of the command line.
+fn explain(error: RenderError, settings: &Settings) -> Failure {
+    let RenderError::Crop(crop) = error else { return error.into() };
+    let [width, height] = settings.size;
+    Failure::usage(format!(
+        "--crop {},{},{},{} reaches beyond the picture of {width} x {height} pixels; expected left + width up to {width} and \
+         top + height up to {height}",
+        crop.x, crop.y, crop.width, crop.height
+    ))
 }
 
 /// What the picture says of itself: nothing that changes from run to run.

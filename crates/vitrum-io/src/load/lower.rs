@@ -2,7 +2,7 @@
 
 use super::matter::Matter;
 use super::meshes::{MeshReport, Meshes};
-use super::naming::Names;
+use super::naming::{self, Names};
 use super::{LoadError, Loaded, error};
 use crate::diagnostic::{Diagnostic, Diagnostics, Source};
 use crate::image::{Display, Tone};
@@ -226,10 +226,11 @@ impl Lowering<'_> {
         let parts = match self.meshes.prepare(&path, normals, group, &mut warn) {
             Ok(parts) => parts.to_vec(),
             Err(reason) => {
-                self.problems.push(
-                    error(source, file_span, reason.to_string(), "this file")
-                        .help("paths are relative to the folder of the scene file"),
-                );
+                let mut problem = error(source, file_span, reason.to_string(), "this file");
+                if reason.is_missing() {
+                    problem = problem.help("paths are relative to the folder of the scene file");
+                }
+                self.problems.push(problem);
                 return;
             }
         };
@@ -243,13 +244,9 @@ impl Lowering<'_> {
                 self.names.for_content("mesh", &content)
             }
         };
-        let several = parts.len() > 1;
-        for (number, part) in parts.into_iter().enumerate() {
-            let name = match (several, part.name.as_str()) {
-                (false, _) => base.clone(),
-                (true, "") => format!("{base}/{}", number + 1),
-                (true, part) => format!("{base}/{part}"),
-            };
+        let own: Vec<&str> = parts.iter().map(|part| part.name.as_str()).collect();
+        let names = naming::of_parts(&base, &own);
+        for (part, name) in parts.into_iter().zip(names) {
             let materials = match &chosen {
                 Some(Some(material)) => vec![*material],
                 Some(None) => continue,

@@ -50,12 +50,31 @@ pub(super) struct Meshes {
 /// Why a mesh can't be used.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum PrepareError {
+    #[error("{}: there is no such file", path.display())]
+    Missing { path: PathBuf },
     #[error(transparent)]
-    File(#[from] ObjError),
+    File(ObjError),
     #[error("{}: {reason}", path.display())]
     Mesh { path: PathBuf, reason: MeshError },
     #[error("{}: there is no object or group named `{name}`; it has {present}", path.display())]
     NoGroup { path: PathBuf, name: String, present: String },
+}
+
+impl From<ObjError> for PrepareError {
+    /// Where a missing file was looked for is another matter in a scene than on the command line.
+    fn from(error: ObjError) -> Self {
+        match error {
+            ObjError::NotFound { path } => Self::Missing { path },
+            other => Self::File(other),
+        }
+    }
+}
+
+impl PrepareError {
+    /// True when there is no such file.
+    pub(super) fn is_missing(&self) -> bool {
+        matches!(self, Self::Missing { .. })
+    }
 }
 
 impl Meshes {

@@ -21,6 +21,8 @@ use crate::diagnostic::{Diagnostic, Diagnostics, Source};
 use crate::image::Display;
 use crate::obj::{self, ObjError};
 use crate::scene::{self, SceneDesc};
+use std::fs;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use vitrum_tracer::{Scene, Settings};
 
@@ -45,7 +47,7 @@ pub struct Loaded {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LoadError {
-    /// The scene file can't be read.
+    /// The scene file can't be read, or the model can't be shown.
     #[error("{}: {reason}", path.display())]
     Unreadable {
         /// The file.
@@ -66,29 +68,39 @@ pub enum LoadError {
 /// # Errors
 /// [`LoadError`] when the file can't be read or has errors.
 pub fn scene_file(path: &Path) -> Result<Loaded, LoadError> {
-    let unreadable = |reason: String| LoadError::Unreadable { path: path.to_owned(), reason };
-    let metadata = std::fs::metadata(path).map_err(|e| {
-        unreadable(match e.kind() {
-            std::io::ErrorKind::NotFound => "there is no such scene file; check the path".to_owned(),
-            _ => format!("cannot be read: {e}"),
-        })
-    })?;
-    if metadata.is_dir() {
-        return Err(unreadable("is a folder, expected a scene file (.toml) or a model (.obj)".to_owned()));
-    }
-    if metadata.len() > scene::MAX_BYTES as u64 {
-        let found = metadata.len();
-        return Err(unreadable(format!(
-            "has {found} bytes, a scene file may have {}; put geometry into OBJ files",
-            scene::MAX_BYTES
-        )));
-    }
-    let bytes = std::fs::read(path).map_err(|e| unreadable(format!("cannot be read: {e}")))?;
-    let text = String::from_utf8(bytes).map_err(|e| {
-        unreadable(format!("is not text in UTF-8 (first at byte {})", e.utf8_error().valid_up_to()))
-    })?;
+    let text = read_text(path).map_err(|reason| LoadError::Unreadable { path: path.to_owned(), reason })?;
     let folder = path.parent().unwrap_or_else(|| Path::new(""));
     scene_text(&path.display().to_string(), &text, folder)
+}
+
+/// The text of a scene file; else what is the matter, and what to do.
+fn read_text(path: &Path) -> Result<String, String> {
+    let refused = |e: io::Error| match e.kind() {
+        io::ErrorKind::NotFound => "there is no such scene file; check the path".to_owned(),
+        io::ErrorKind::PermissionDenied => format!("cannot be read ({e}); check its permissions"),
+        _ => format!("cannot be read ({e})"),
+    };
+    if fs::metadata(path).map_err(refused)?.is_dir() {
+        return Err("is a folder, expected a scene file (.toml) or a model (.obj)".to_owned());
+    }
+    // Some files, such as pipes, don't say their size, or have no end: one byte too many is enough.
+    let mut bytes = Vec::new();
+    let mut file = fs::File::open(path).map_err(refused)?.take(scene::MAX_BYTES as u64 + 1);
+    file.read_to_end(&mut bytes).map_err(refused)?;
+    if bytes.len() > scene::MAX_BYTES {
+        let limit = scene::MAX_BYTES;
+        return Err(format!(
+            "a scene file may have {limit} bytes, this one has more; put geometry into OBJ files"
+        ));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let before = String::from_utf8_lossy(&error.as_bytes()[..valid]);
+        let line = before.matches('\n').count() + 1;
+        let column = before.rsplit('\n').next().map_or(0, |last| last.chars().count()) + 1;
+        let byte = error.as_bytes()[valid];
+        format!("line {line}, column {column}: found the byte 0x{byte:02x}, expected text in UTF-8; save the file as UTF-8")
+    })
 }
 
 /// Loads the text of a scene, called `name` in messages. Its files are looked for in `folder`.

@@ -110,10 +110,10 @@ fn model(path: &Path, file: &ObjFile, options: &ModelOptions) -> Object {
     object("model", shape, material)
 }
 
-fn floor(bounds: &Bounds) -> Object {
+fn floor(bounds: &Bounds, size: f64) -> Object {
     let point = DVec3::new(bounds.centre().x, bounds.min.y, bounds.centre().z);
     // A hair below what stands on it: the lowest point of the model touches, its faces don't coincide.
-    let point = point - DVec3::Y * (1e-3 * bounds.extent().length().max(1e-12));
+    let point = point - DVec3::Y * (1e-3 * size);
     let color = ColourOrTexture::Texture(Name::new("floor"));
     object("floor", Shape::Plane { point, normal: DVec3::Y }, Some(Model::Matte { color, ka: 1.0, kd: 0.9 }))
 }
@@ -133,6 +133,24 @@ fn object(name: &str, shape: Shape, model: Option<Model>) -> Object {
 
 fn light(kind: LightKind) -> Light {
     Light { span: Span::default(), name: None, kind }
+}
+
+/// The diagonal of the model, or why no scene can be built around it.
+fn size(bounds: &Bounds) -> Result<f64, String> {
+    let farthest = bounds.min.abs().max(bounds.max.abs()).max_element();
+    if farthest > LARGEST {
+        return Err(format!(
+            "a vertex has the coordinate {farthest:e}, expected at most {LARGEST:e}; scale the model down"
+        ));
+    }
+    match bounds.extent().max_element() {
+        // All vertices in one point: that the mesh has no area is told with the mesh.
+        0.0 => Ok(1.0),
+        extent if extent < SMALLEST => {
+            Err(format!("the model is {extent:e} across, expected at least {SMALLEST:e}; scale the model up"))
+        }
+        _ => Ok(bounds.extent().length()),
+    }
 }
 
 /// The box around all vertices that faces use.
