@@ -4,12 +4,9 @@
 //! shape of radius about 1, so that most hit and many miss. `leaving` rays start on the shape and go inward: what a ray
 //! inside glass asks.
 
-mod directions;
-mod measure;
-
-use criterion::{Criterion, criterion_group, criterion_main};
-use directions::{INPUTS, direction};
-use measure::{measure, short};
+use crate::directions::{INPUTS, direction};
+use crate::measure::measure;
+use criterion::Criterion;
 use std::hint::black_box;
 use std::sync::Arc;
 use vitrum::geometry::mesh::{MeshData, TriangleMesh};
@@ -17,6 +14,11 @@ use vitrum::geometry::shape::{Crossings, Cuboid, Cylinder, Disk, Leaving, Plane,
 use vitrum::geometry::{Aggregate, Counters, Object, Query, Shape};
 use vitrum::math::{DVec3, Ray, Transform, unit};
 use vitrum_testkit::Uniform;
+
+pub(crate) fn bench(criterion: &mut Criterion) {
+    shapes(criterion);
+    triangles(criterion);
+}
 
 /// Rays from outside.
 fn arriving() -> Vec<Ray> {
@@ -83,6 +85,3 @@ fn triangles(criterion: &mut Criterion) {
         }
     });
 }
-
-criterion_group! { name = benches; config = short(); targets = shapes, triangles }
-criterion_main!(benches);

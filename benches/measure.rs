@@ -11,8 +11,8 @@ use std::time::Duration;
 pub(crate) fn short() -> Criterion {
     Criterion::default()
         .warm_up_time(Duration::from_millis(300))
-        .measurement_time(Duration::from_secs(1))
-        .sample_size(30)
+        .measurement_time(Duration::from_secs(2))
+        .sample_size(40)
         .nresamples(10_000)
 }
 

@@ -3,14 +3,17 @@
 //! Elements are samples: camera rays with their whole trees and their shadow rays. Small pictures of the whole view, so
 //! that floor, sky and glass have the share that they have in a large one.
 
-mod measure;
-
-use criterion::{Criterion, criterion_group, criterion_main};
-use measure::{measure, short};
+use crate::measure::measure;
+use criterion::Criterion;
 use std::hint::black_box;
 use std::path::Path;
 use vitrum::io::load::{Loaded, ModelOptions, model_file, scene_text};
 use vitrum::tracer::{Settings, render};
+
+pub(crate) fn bench(criterion: &mut Criterion) {
+    built_in_scene(criterion);
+    glass_mesh(criterion);
+}
 
 fn picture(criterion: &mut Criterion, name: &str, loaded: &Loaded, size: [u32; 2], spp: u32) {
     let settings = Settings { size, spp, threads: 1, ..loaded.settings };
@@ -32,6 +35,3 @@ fn glass_mesh(criterion: &mut Criterion) {
     let loaded = model_file(&path, &ModelOptions::default());
     picture(criterion, "pixel/glass knot", &loaded.expect("the mesh is part of the repository"), [48, 48], 4);
 }
-
-criterion_group! { name = benches; config = short(); targets = built_in_scene, glass_mesh }
-criterion_main!(benches);

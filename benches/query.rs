@@ -9,22 +9,24 @@
 //! | random | from anywhere within the bounds to anywhere; no two alike | closest |
 //! | shadow | where a primary ray hits, towards a lamp | occluded |
 
-mod directions;
-mod measure;
-
-use criterion::{Criterion, criterion_group, criterion_main};
-use directions::{INPUTS, direction};
-use measure::{measure, short};
+use crate::directions::{INPUTS, direction};
+use crate::measure::measure;
+use criterion::Criterion;
 use std::hint::black_box;
 use std::path::Path;
 use std::sync::Arc;
 use vitrum::bxdf::{Interface, Refraction};
 use vitrum::geometry::mesh::{MeshData, TriangleMesh};
-use vitrum::geometry::shape::Sphere;
+use vitrum::geometry::shape::{Cuboid, Cylinder, Sphere};
 use vitrum::geometry::{Aggregate, Counters, Object, Query, Shape, Side, SurfaceInteraction};
 use vitrum::math::{DVec3, Frame, Ray, Transform, unit};
 use vitrum::tracer::{Camera, Projection};
 use vitrum_testkit::Uniform;
+
+pub(crate) fn bench(criterion: &mut Criterion) {
+    query(criterion);
+    build(criterion);
+}
 
 /// Edge of the picture of the primary rays.
 const EDGE: u32 = 64;
@@ -50,6 +52,21 @@ fn thousand_spheres() -> Aggregate {
     let mut uniform = Uniform::new(1);
     let mut number = || uniform.number() * 2.0 - 1.0;
     aggregate((0..1000).map(|_| sphere(DVec3::new(number(), number(), number()), 0.06)))
+}
+
+/// A dozen shapes of three kinds, like a scene that somebody wrote by hand.
+fn twelve_shapes() -> Aggregate {
+    let mut uniform = Uniform::new(3);
+    let mut point = || DVec3::new(uniform.number(), uniform.number(), uniform.number()) * 2.0 - DVec3::ONE;
+    let valid = "the shape has a volume";
+    aggregate((0..12).map(|i| {
+        let (centre, half) = (point(), DVec3::splat(0.25));
+        match i % 3 {
+            0 => sphere(centre, 0.3),
+            1 => Shape::Cuboid(Cuboid::new(centre - half, centre + half).expect(valid)),
+            _ => Shape::Cylinder(Cylinder::new(centre - half, centre + half, 0.2, true).expect(valid)),
+        }
+    }))
 }
 
 /// A torus knot of 12 288 triangles, from the gallery.
@@ -118,6 +135,7 @@ fn shadows(scene: &Aggregate, surfaces: &[SurfaceInteraction]) -> Vec<(Query, f6
 fn query(criterion: &mut Criterion) {
     let scenes = [
         ("4 spheres", four_spheres()),
+        ("12 shapes", twelve_shapes()),
         ("1000 spheres", thousand_spheres()),
         ("knot", aggregate([trace(&knot())])),
     ];
@@ -148,6 +166,3 @@ fn build(criterion: &mut Criterion) {
         black_box(trace(&mesh));
     });
 }
-
-criterion_group! { name = benches; config = short(); targets = query, build }
-criterion_main!(benches);

@@ -4,12 +4,9 @@
 //! the glass (n = 1.5) three in four are beyond the critical angle, whose cosine is 0.745: a branch that can't be predicted,
 //! as in a picture.
 
-mod directions;
-mod measure;
-
-use criterion::{Criterion, criterion_group, criterion_main};
-use directions::{INPUTS, direction};
-use measure::{measure, short};
+use crate::directions::{INPUTS, direction};
+use crate::measure::measure;
+use criterion::Criterion;
 use std::hint::black_box;
 use vitrum::bxdf::{
     Bxdf, GlossySpecular, Interface, Lambertian, PerfectSpecular, PerfectTransmitter, Real, TransportMode,
@@ -17,6 +14,12 @@ use vitrum::bxdf::{
 };
 use vitrum::math::DVec3;
 use vitrum_testkit::Uniform;
+
+pub(crate) fn bench(criterion: &mut Criterion) {
+    refract(criterion);
+    split(criterion);
+    density(criterion);
+}
 
 /// Directions of the whole sphere.
 fn everywhere() -> Vec<DVec3> {
@@ -108,6 +111,3 @@ fn density(criterion: &mut Criterion) {
         });
     }
 }
-
-criterion_group! { name = benches; config = short(); targets = refract, split, density }
-criterion_main!(benches);

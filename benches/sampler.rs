@@ -2,12 +2,16 @@
 //!
 //! Elements are pairs of numbers.
 
-mod measure;
-
-use criterion::{Criterion, criterion_group, criterion_main};
-use measure::{measure, short};
+use crate::measure::measure;
+use criterion::Criterion;
 use std::hint::black_box;
 use vitrum::math::{NodeKey, Purpose, SampleAddress, concentric_disk};
+
+pub(crate) fn bench(criterion: &mut Criterion) {
+    film(criterion);
+    lens(criterion);
+    nodes(criterion);
+}
 
 /// Pairs of one pass.
 const PAIRS: u32 = 4096;
@@ -42,6 +46,3 @@ fn nodes(criterion: &mut Criterion) {
         }
     });
 }
-
-criterion_group! { name = benches; config = short(); targets = film, lens, nodes }
-criterion_main!(benches);

@@ -28,7 +28,13 @@ impl<R: Real> GlossySpecular<R> {
     #[inline]
     fn lobe(&self, wo: R::Vec3, wi: R::Vec3) -> R {
         let cos = wo.z() * wi.z() - wo.x() * wi.x() - wo.y() * wi.y();
-        if wo.z() * wi.z() > R::zero() && cos > R::zero() { cos.powf(self.exponent) } else { R::zero() }
+        // ln c ≤ c − 1: below this bound the power is less than any positive number, and comes out as zero anyway.
+        let vanishes = self.exponent * (cos - R::one()) < R::smallest_logarithm();
+        if wo.z() * wi.z() <= R::zero() || cos <= R::zero() || vanishes {
+            R::zero()
+        } else {
+            cos.powf(self.exponent)
+        }
     }
 
     /// f · |cos θi|, per steradian.

@@ -46,6 +46,9 @@ pub trait Real:
     /// True unless infinite or NaN.
     fn is_finite(self) -> bool;
 
+    /// The exponential of anything below this is zero.
+    fn smallest_logarithm() -> Self;
+
     /// Zero.
     #[inline]
     fn zero() -> Self {
@@ -101,7 +104,7 @@ pub trait Vector<R>:
 }
 
 macro_rules! real {
-    ($real:ty, $vec3:ty, $sqrt:path, $pow:path, $sincos:path) => {
+    ($real:ty, $vec3:ty, $sqrt:path, $pow:path, $sincos:path, $smallest_logarithm:literal) => {
         impl Real for $real {
             type Vec3 = $vec3;
             #[inline]
@@ -131,6 +134,10 @@ macro_rules! real {
             #[inline]
             fn is_finite(self) -> bool {
                 <$real>::is_finite(self)
+            }
+            #[inline]
+            fn smallest_logarithm() -> Self {
+                $smallest_logarithm
             }
         }
 
@@ -171,5 +178,5 @@ macro_rules! real {
     };
 }
 
-real!(f32, Vec3, libm::sqrtf, libm::powf, libm::sincosf);
-real!(f64, DVec3, libm::sqrt, libm::pow, libm::sincos);
+real!(f32, Vec3, libm::sqrtf, libm::powf, libm::sincosf, -105.0);
+real!(f64, DVec3, libm::sqrt, libm::pow, libm::sincos, -746.0);

@@ -58,11 +58,11 @@ pub(crate) struct Render {
     pub(crate) output: PathBuf,
 
     /// Samples per pixel, in place of the scene's
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = whole::<1, 1_000_000>, allow_negative_numbers = true)]
     pub(crate) spp: Option<u32>,
 
     /// Deepest ray of a tree, in place of the scene's; the camera ray has depth 0
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1000), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = whole::<0, 1000>, allow_negative_numbers = true)]
     pub(crate) max_depth: Option<u32>,
 
     /// Weight below which subtrees are given up, in place of the scene's (0 to 1)
@@ -78,15 +78,15 @@ pub(crate) struct Render {
     pub(crate) crop: Option<Crop>,
 
     /// Seed of all random numbers, in place of the scene's
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
     pub(crate) seed: Option<u64>,
 
     /// Threads, at most 1024; 0 for as many as the machine has. The picture does not depend on it
-    #[arg(short, long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1024), allow_negative_numbers = true)]
+    #[arg(short, long, value_name = "N", default_value_t = 0, value_parser = whole::<0, 1024>, allow_negative_numbers = true)]
     pub(crate) threads: u32,
 
     /// Edge of the squares that threads work on, in pixels. The picture does not depend on it
-    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=4096), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = whole::<1, 4096>, allow_negative_numbers = true)]
     pub(crate) tile: u32,
 
     /// No progress, no warnings, no summary
@@ -187,6 +187,16 @@ fn crop(text: &str) -> Result<Crop, String> {
     }
 }
 
+/// A whole number from `MIN` to `MAX`.
+fn whole<const MIN: u32, const MAX: u32>(text: &str) -> Result<u32, String> {
+    let number = text.parse().ok().filter(|n| (MIN..=MAX).contains(n));
+    number.ok_or_else(|| format!("expected a whole number from {MIN} to {MAX}"))
+}
+
+fn seed(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| format!("expected a whole number from 0 to {}", u64::MAX))
+}
+
 fn unit_interval(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|n| (0.0..=1.0).contains(n));
     number.ok_or_else(|| "expected a number from 0 to 1".to_owned())
@@ -213,5 +223,15 @@ mod tests {
         assert!(size("0x480").is_err() && size("640").is_err() && size("-1x2").is_err());
         assert_eq!(crop("1, 2,3,4"), Ok(Crop { x: 1, y: 2, width: 3, height: 4 }));
         assert!(crop("1,2,3").is_err() && crop("1,2,0,4").is_err());
+    }
+
+    #[test]
+    fn whole_numbers_have_their_range() {
+        assert_eq!(whole::<1, 16>("16"), Ok(16));
+        for text in ["0", "17", "1.5", "-1", "", "99999999999999999999"] {
+            assert_eq!(whole::<1, 16>(text), Err("expected a whole number from 1 to 16".to_owned()));
+        }
+        assert_eq!(seed("18446744073709551615"), Ok(u64::MAX));
+        assert!(seed("18446744073709551616").is_err() && seed("-1").is_err());
     }
 }

@@ -14,7 +14,8 @@ fn renewed(page: &str) -> String {
         let opened = start + rest[start..].find('\n').expect("the marker ends its line") + 1;
         let end = opened + rest[opened..].find("<!-- end -->").expect("every help has its end");
         let command = root.find_subcommand_mut(name).expect("the page names commands of the program");
-        let help = command.clone().bin_name(format!("vitrum {name}")).term_width(100).render_help().to_string();
+        let help =
+            command.clone().bin_name(format!("vitrum {name}")).term_width(100).render_help().to_string();
         let help: String = help.lines().map(|line| format!("{}\n", line.trim_end())).collect();
         renewed += &format!("{}\n```text\n{help}```\n\n<!-- end -->", &rest[..opened]);
         rest = &rest[end + "<!-- end -->".len()..];
@@ -30,5 +31,8 @@ fn the_page_is_the_programs_own_help() {
     if vitrum_testkit::blessing() {
         std::fs::write(&path, &expected).expect("the page can be written");
     }
-    assert!(page == expected || vitrum_testkit::blessing(), "docs/cli.md is out of date: VITRUM_BLESS=1 renews it");
+    assert!(
+        page == expected || vitrum_testkit::blessing(),
+        "docs/cli.md is out of date: VITRUM_BLESS=1 renews it"
+    );
 }

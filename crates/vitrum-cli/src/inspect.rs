@@ -4,6 +4,7 @@ use crate::args::Inspect;
 use crate::failure::Failure;
 use crate::input;
 use crate::terminal;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::process::ExitCode;
 use vitrum_io::load::{Loaded, MeshReport};
@@ -66,10 +67,11 @@ fn objects(out: &mut String, loaded: &Loaded) -> std::fmt::Result {
     let scene = &loaded.scene;
     let names = scene.names();
     writeln!(out, "{}", count(names.len() + scene.invisible().len(), "object"))?;
+    let meshes: BTreeMap<&str, &MeshReport> = loaded.meshes.iter().map(|m| (m.object.as_str(), m)).collect();
     for (id, (name, object)) in (0u32..).zip(names.iter().zip(scene.aggregate().objects())) {
         let materials: Vec<String> = scene.materials_of(id).iter().map(describe_material).collect();
         writeln!(out, "  {name}: {}, {}", object.shape().name(), materials.join("; "))?;
-        for mesh in loaded.meshes.iter().filter(|m| m.object == *name) {
+        if let Some(mesh) = meshes.get(name.as_str()) {
             describe_mesh(out, mesh)?;
         }
     }

@@ -94,7 +94,7 @@ fn metadata(settings: &Settings, samples: u32) -> Vec<(String, String)> {
         ShadowMode::Straight => "straight (biased)",
     };
     let [width, height] = settings.size;
-    let pair = |key: &str, value: String| (format!("vitrum:{key}"), value);
+    let pair = |key: &str, value: String| (key.to_owned(), value);
     let mut pairs = vec![
         pair("version", env!("CARGO_PKG_VERSION").to_owned()),
         pair("integrator", "whitted".to_owned()),

@@ -76,6 +76,8 @@ pub struct Aggregate {
     flat: Vec<u32>,
     /// The rest.
     tree: Option<ObjectTree>,
+    /// For each object whether it is a convex solid apart from all others: a ray inside it can meet nothing but itself.
+    isolated: Vec<bool>,
     bounds: Bounds,
 }
 
@@ -87,12 +89,38 @@ struct ObjectTree {
     objects: Vec<u32>,
 }
 
+impl ObjectTree {
+    #[inline(never)]
+    fn closest(&self, objects: &[Object], query: &Query, nearest: &mut Nearest, counters: &mut Counters) {
+        let Some(ray) = self.frame.enter(&query.ray, nearest.limit()) else { return };
+        self.boxes.traverse(&ray, ray.box_limit(nearest.limit()), |item, _| {
+            let id = self.objects[item as usize];
+            objects[id as usize].closest(query, id, nearest, counters);
+            ControlFlow::Continue(ray.box_limit(nearest.limit()))
+        });
+    }
+
+    #[inline(never)]
+    fn any(&self, objects: &[Object], query: &Query, limit: f64, counters: &mut Counters) -> bool {
+        let Some(ray) = self.frame.enter(&query.ray, limit) else { return false };
+        let box_limit = ray.box_limit(limit);
+        let mut found = false;
+        self.boxes.traverse(&ray, box_limit, |item, _| {
+            let id = self.objects[item as usize];
+            found = objects[id as usize].any(query, id, limit, counters);
+            if found { ControlFlow::Break(()) } else { ControlFlow::Continue(box_limit) }
+        });
+        found
+    }
+}
+
 impl Aggregate {
     /// Objects in the order of their ids.
     pub fn new(objects: Vec<Object>) -> Self {
         let bounded: Vec<(u32, Bounds)> =
             (0u32..).zip(&objects).filter_map(|(id, o)| o.bounds().map(|b| (id, b))).collect();
         let bounds = bounded.iter().fold(Bounds::EMPTY, |all, (_, b)| all.union(*b));
+        let isolated = isolated(&objects, &bounded);
         let is_flat = bounded.len() <= FLAT_LIMIT;
         let (mut spheres, mut flat) = (Vec::new(), Vec::new());
         for (id, object) in (0u32..).zip(&objects).filter(|(_, o)| is_flat || o.bounds().is_none()) {
@@ -108,7 +136,7 @@ impl Aggregate {
             );
             ObjectTree { frame, boxes, objects: bounded.iter().map(|(id, _)| *id).collect() }
         });
-        Self { objects, spheres, flat, tree, bounds }
+        Self { objects, spheres, flat, tree, isolated, bounds }
     }
 
     /// The objects, by id.
@@ -127,9 +155,14 @@ impl Aggregate {
     }
 
     /// What the ray hits first: the smallest (t, object, face) that counts.
-    #[inline]
+    // Not inlined, here and below: the compiler would prepare for trees and meshes before it looks whether there are any.
+    #[inline(never)]
     pub fn closest(&self, query: &Query, counters: &mut Counters) -> Option<Hit> {
         let mut nearest = Nearest::default();
+        if let Some(solid) = self.enclosing(query) {
+            self.objects[solid as usize].closest(query, solid, &mut nearest, counters);
+            return nearest.found();
+        }
         for (id, sphere) in &self.spheres {
             let Crossing { t, face } = query.first(sphere.crossings(&query.ray, query.face_left(*id)), *id);
             if t <= nearest.limit() && t < f64::INFINITY {
@@ -139,47 +172,89 @@ impl Aggregate {
         for &id in &self.flat {
             self.objects[id as usize].closest(query, id, &mut nearest, counters);
         }
-        if let Some(tree) = &self.tree
-            && let Some(ray) = tree.frame.enter(&query.ray, nearest.limit())
-        {
-            tree.boxes.traverse(&ray, ray.box_limit(nearest.limit()), |item, _| {
-                let id = tree.objects[item as usize];
-                self.objects[id as usize].closest(query, id, &mut nearest, counters);
-                ControlFlow::Continue(ray.box_limit(nearest.limit()))
-            });
+        if let Some(tree) = &self.tree {
+            tree.closest(&self.objects, query, &mut nearest, counters);
         }
         nearest.found()
     }
 
-    /// True when anything is hit nearer than `limit` metres.
+    /// The isolated convex solid that the ray starts inside of, if it does.
     #[inline]
+    fn enclosing(&self, query: &Query) -> Option<u32> {
+        let departed = query.departed.as_ref()?;
+        (departed.behind && self.isolated[departed.object as usize]).then_some(departed.object)
+    }
+
+    /// True when anything is hit nearer than `limit` metres.
+    #[inline(never)]
     pub fn occluded(&self, query: &Query, limit: f64, counters: &mut Counters) -> bool {
-        let blocks = |(id, sphere): &(u32, Sphere)| {
-            query.first(sphere.crossings(&query.ray, query.face_left(*id)), *id).t < limit
-        };
-        if self.spheres.iter().any(blocks) {
-            return true;
+        for (id, sphere) in &self.spheres {
+            if query.first(sphere.crossings(&query.ray, query.face_left(*id)), *id).t < limit {
+                return true;
+            }
         }
-        if self.flat.iter().any(|&id| self.objects[id as usize].any(query, id, limit, counters)) {
-            return true;
+        for &id in &self.flat {
+            if self.objects[id as usize].any(query, id, limit, counters) {
+                return true;
+            }
         }
-        let mut found = false;
-        if let Some(tree) = &self.tree
-            && let Some(ray) = tree.frame.enter(&query.ray, limit)
-        {
-            let box_limit = ray.box_limit(limit);
-            tree.boxes.traverse(&ray, box_limit, |item, _| {
-                let id = tree.objects[item as usize];
-                found = self.objects[id as usize].any(query, id, limit, counters);
-                if found { ControlFlow::Break(()) } else { ControlFlow::Continue(box_limit) }
-            });
-        }
-        found
+        self.tree.as_ref().is_some_and(|tree| tree.any(&self.objects, query, limit, counters))
     }
 
     /// The point of a hit that [`closest`](Self::closest) found for the same query.
     #[inline]
     pub fn interaction(&self, query: &Query, hit: &Hit) -> SurfaceInteraction {
         self.objects[hit.object as usize].interaction(query, hit)
+    }
+}
+
+/// Which objects are convex solids that touch no other object's bounds.
+fn isolated(objects: &[Object], bounded: &[(u32, Bounds)]) -> Vec<bool> {
+    // Sweep along x: bounds that overlap there are compared in full.
+    let mut order: Vec<usize> = (0..bounded.len()).collect();
+    order.sort_by(|&a, &b| bounded[a].1.min.x.total_cmp(&bounded[b].1.min.x));
+    let mut touched = vec![false; objects.len()];
+    for (rank, &a) in order.iter().enumerate() {
+        let (id, bounds) = bounded[a];
+        for &b in &order[rank + 1..] {
+            let (other_id, other) = bounded[b];
+            if other.min.x > bounds.max.x {
+                break;
+            }
+            if bounds.touches(&other) {
+                touched[id as usize] = true;
+                touched[other_id as usize] = true;
+            }
+        }
+    }
+    for plane in objects.iter().filter(|o| o.bounds().is_none()) {
+        for (id, bounds) in bounded {
+            touched[*id as usize] |= plane.may_cross(bounds);
+        }
+    }
+    objects.iter().zip(touched).map(|(object, touched)| object.is_convex_solid() && !touched).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::{Plane, Shape, Sphere};
+    use vitrum_math::{DVec3, Transform};
+
+    fn object(shape: Shape) -> Object {
+        Object::new(shape, &Transform::IDENTITY, false).expect("valid")
+    }
+
+    fn sphere(x: f64, y: f64) -> Object {
+        object(Shape::Sphere(Sphere::new(DVec3::new(x, y, 0.0), 1.0).expect("valid")))
+    }
+
+    #[test]
+    fn only_solids_that_touch_nothing_are_isolated() {
+        let floor = object(Shape::Plane(Plane::new(DVec3::ZERO, DVec3::Y).expect("valid")));
+        let objects = vec![sphere(0.0, 1.5), sphere(2.0, 1.5), sphere(4.5, 1.5), sphere(8.0, 1.0), floor];
+        let aggregate = Aggregate::new(objects);
+        // The first two touch each other, the fourth stands on the floor.
+        assert_eq!(aggregate.isolated, [false, false, true, false, false]);
     }
 }

@@ -59,6 +59,26 @@ impl Object {
         }
     }
 
+    /// True for a shape with an inside that is convex, whatever its transform.
+    pub(crate) fn is_convex_solid(&self) -> bool {
+        match &self.shape {
+            Shape::Sphere(_) | Shape::Cuboid(_) => true,
+            Shape::Cylinder(cylinder) => cylinder.is_capped(),
+            Shape::Plane(_) | Shape::Disk(_) | Shape::Rectangle(_) | Shape::Mesh(_) => false,
+        }
+    }
+
+    /// False when an infinite object certainly stays outside of the bounds.
+    pub(crate) fn may_cross(&self, bounds: &Bounds) -> bool {
+        match &self.shape {
+            Shape::Plane(plane) => {
+                let sides = bounds.corners().map(|corner| plane.normal().dot(corner - plane.point()));
+                !(sides.iter().all(|s| *s > 0.0) || sides.iter().all(|s| *s < 0.0))
+            }
+            _ => true,
+        }
+    }
+
     /// The number of the material of a face; 0 unless the shape is a mesh with several.
     #[inline]
     pub fn material_of(&self, face: u32) -> u32 {

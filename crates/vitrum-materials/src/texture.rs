@@ -59,10 +59,18 @@ impl Checker {
     #[inline]
     fn at(&self, point: DVec3) -> Rgb {
         let cell = (point - self.origin) / self.size;
-        let odd = |counts: bool, x: f64| counts && x.floor().rem_euclid(2.0) == 1.0;
+        let odd = |counts: bool, x: f64| counts && floor(x) & 1 == 1;
         let is_odd = odd(self.axes.x, cell.x) ^ odd(self.axes.y, cell.y) ^ odd(self.axes.z, cell.z);
         if is_odd { self.odd } else { self.even }
     }
+}
+
+/// The largest whole number that is not above `x`; the nearest that there is for magnitudes beyond 2⁶³, where every cell is
+/// much smaller than the rounding of the coordinate.
+#[inline]
+fn floor(x: f64) -> i64 {
+    let towards_zero = x as i64;
+    towards_zero.saturating_sub(i64::from(x < towards_zero as f64))
 }
 
 #[cfg(test)]
@@ -79,5 +87,14 @@ mod tests {
         assert_eq!(at(0.1, 0.0, 0.6), Rgb::ZERO);
         assert_eq!(at(-0.1, 0.0, -0.1), Rgb::ONE);
         assert_eq!(at(0.1, 0.7, 0.1), Rgb::ONE, "height does not count");
+    }
+
+    #[test]
+    fn floors_like_the_library() {
+        for x in [-2.0, -1.5, -1.0, -1e-300, -0.0, 0.0, 0.5, 1.0, 7.999, -1e15, 123_456_789.75] {
+            assert_eq!(floor(x) as f64, f64::floor(x), "{x}");
+        }
+        floor(f64::INFINITY);
+        floor(f64::NAN);
     }
 }

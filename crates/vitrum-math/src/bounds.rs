@@ -40,6 +40,11 @@ impl Bounds {
         self.max - self.min
     }
 
+    /// True when the boxes share at least a point.
+    pub fn touches(&self, other: &Self) -> bool {
+        self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
+    }
+
     /// Its eight corners.
     pub fn corners(&self) -> [DVec3; 8] {
         core::array::from_fn(|i| {

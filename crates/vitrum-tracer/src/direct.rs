@@ -6,31 +6,52 @@ use crate::settings::ShadowMode;
 use crate::stats::Stats;
 use vitrum_geometry::{Side, SurfaceInteraction};
 use vitrum_materials::Scattering;
-use vitrum_math::{Frame, Rgb};
+use vitrum_math::{DVec3, Frame, Rgb};
 
-/// The radiance that all lights together send by way of `surface` to where the ray came from.
+/// The tails of a sharp highlight reach down to 1e-300. Less than this, far below what a single-precision sample can hold
+/// after any number of crossings, is not worth a shadow ray.
+const INVISIBLE: f64 = 1e-60;
+
+/// The radiance that all lights together send by way of `surface` to where the ray came from; `normal` is the one that it
+/// is shaded with.
 pub(crate) fn direct(
     scene: &Scene,
     shadow: ShadowMode,
     surface: &SurfaceInteraction,
-    frame: &Frame,
+    normal: DVec3,
     scattering: &Scattering,
     stats: &mut Stats,
 ) -> Rgb {
-    let wo = frame.to_local(surface.wo);
     let mut radiance = Rgb::ZERO;
     for light in &scene.lights {
-        let Some(arrival) = light.arriving_at(surface.point) else { continue };
-        // Light on the other side of the surface can't be reflected, whatever an interpolated normal says.
-        if surface.side_of(arrival.towards) != Side::Incident {
-            continue;
-        }
-        let reflected = scattering.eval(wo, frame.to_local(arrival.towards)) * arrival.irradiance;
-        if reflected != Rgb::ZERO {
-            radiance += reflected * visibility(scene, shadow, light, &arrival, surface, stats);
+        // Light on the other side of the surface can't be reflected, whatever an interpolated normal says. Every light is on
+        // the other side of the inner walls of glass, so this comes before anything else.
+        if surface.side_of(light.offset(surface.point)) == Side::Incident {
+            radiance += from_one(scene, light, shadow, surface, normal, scattering, stats);
         }
     }
     radiance
+}
+
+/// What one light on the viewer's side adds.
+#[inline(never)]
+fn from_one(
+    scene: &Scene,
+    light: &Light,
+    shadow: ShadowMode,
+    surface: &SurfaceInteraction,
+    normal: DVec3,
+    scattering: &Scattering,
+    stats: &mut Stats,
+) -> Rgb {
+    let Some(arrival) = light.arriving_at(surface.point) else { return Rgb::ZERO };
+    let frame = Frame::around(normal);
+    let (wo, wi) = (frame.to_local(surface.wo), frame.to_local(arrival.towards));
+    let reflected = scattering.eval(wo, wi) * arrival.irradiance;
+    if reflected.max_element() <= INVISIBLE {
+        return Rgb::ZERO;
+    }
+    reflected * visibility(scene, shadow, light, &arrival, surface, stats)
 }
 
 /// The share of the light that reaches the surface: zero or one, but through glass in straight mode.

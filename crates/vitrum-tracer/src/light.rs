@@ -48,6 +48,15 @@ pub struct Arrival {
 }
 
 impl Light {
+    /// A vector from `point` towards the light, of any length.
+    #[inline]
+    pub fn offset(&self, point: DVec3) -> DVec3 {
+        match *self {
+            Self::Point { position, .. } => position - point,
+            Self::Directional { towards, .. } => towards,
+        }
+    }
+
     /// The light that arrives at `point`; `None` at the light itself.
     #[inline]
     pub fn arriving_at(&self, point: DVec3) -> Option<Arrival> {

@@ -65,8 +65,11 @@ impl<'s> Walker<'s> {
             // Light from other surfaces arrives along the children.
             if scattering.specular.is_some() {
                 let (split, frame) = self.split(&surface, &scattering);
-                for child in [split.reflected, split.transmitted].into_iter().flatten() {
-                    self.follow(&node, &surface, &frame, &child);
+                if let Some(child) = &split.reflected {
+                    self.follow(&node, &surface, &frame, child);
+                }
+                if let Some(child) = &split.transmitted {
+                    self.follow(&node, &surface, &frame, child);
                 }
             }
         }
@@ -84,8 +87,8 @@ impl<'s> Walker<'s> {
             local += scattering.ambient * self.scene.ambient;
         }
         if self.plan.lights > 0 && scattering.answers_lights() {
-            let frame = Frame::around(shading_normal(surface));
-            local += direct(self.scene, self.settings.shadow, surface, &frame, scattering, &mut self.stats);
+            let normal = shading_normal(surface);
+            local += direct(self.scene, self.settings.shadow, surface, normal, scattering, &mut self.stats);
         }
         local
     }

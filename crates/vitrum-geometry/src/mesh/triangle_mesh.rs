@@ -156,7 +156,7 @@ impl TriangleMesh {
     }
 
     /// Offers the first triangle that counts, if it is nearer than what was found before.
-    #[inline]
+    #[inline(never)]
     pub(crate) fn closest(
         &self,
         ray: &Ray,
@@ -179,7 +179,7 @@ impl TriangleMesh {
     }
 
     /// True when some triangle counts and lies nearer than `limit`.
-    #[inline]
+    #[inline(never)]
     pub(crate) fn any(
         &self,
         ray: &Ray,
@@ -272,6 +272,7 @@ impl TriangleMesh {
     }
 
     /// The point of `face` with the given weights of its second and third corner.
+    #[inline(never)]
     pub(crate) fn point(&self, face: u32, [b1, b2]: [f64; 2]) -> MeshPoint {
         let [v0, v1, v2] = self.corners(face).map(|c| c.as_dvec3());
         let weights = [1.0 - b1 - b2, b1, b2];

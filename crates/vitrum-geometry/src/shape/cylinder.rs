@@ -38,6 +38,11 @@ impl Cylinder {
         Ok(Self { bottom, axis, height: (top - bottom).length(), radius: radius(r)?, capped })
     }
 
+    /// True for a solid.
+    pub const fn is_capped(&self) -> bool {
+        self.capped
+    }
+
     pub(crate) fn bounds(&self) -> Bounds {
         let half = (DVec3::ONE - self.axis * self.axis).max(DVec3::ZERO);
         let half = DVec3::new(half.x.sqrt(), half.y.sqrt(), half.z.sqrt()) * self.radius;

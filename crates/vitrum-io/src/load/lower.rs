@@ -7,6 +7,7 @@ use super::{LoadError, Loaded, error};
 use crate::diagnostic::{Diagnostic, Diagnostics, Source};
 use crate::image::{Display, Tone};
 use crate::scene::{self, MaterialChoice, Normals, SceneDesc, Step};
+use std::collections::BTreeMap;
 use std::path::Path;
 use vitrum_geometry::Object;
 use vitrum_geometry::shape::{Cuboid, Cylinder, Disk, Plane, Rectangle, Shape, ShapeError, Sphere};
@@ -19,6 +20,8 @@ use vitrum_tracer::{
 /// Everything that lowering an object needs and adds to.
 struct Lowering<'a> {
     desc: &'a SceneDesc,
+    /// The objects that instances can refer to.
+    named: BTreeMap<&'a str, &'a scene::Object>,
     source: &'a Source<'a>,
     folder: &'a Path,
     matter: Matter<'a>,
@@ -39,6 +42,7 @@ pub(super) fn lower(
 ) -> Result<Loaded, LoadError> {
     let mut lowering = Lowering {
         desc,
+        named: desc.objects.iter().filter_map(|o| Some((o.name.as_ref()?.text.as_str(), o))).collect(),
         source,
         folder,
         matter: Matter::new(desc),
@@ -80,7 +84,7 @@ pub(super) fn lower(
     }
 }
 
-impl Lowering<'_> {
+impl<'a> Lowering<'a> {
     fn camera(&mut self) -> Option<Camera> {
         let c = &self.desc.camera;
         let projection = match c.lens {
@@ -102,7 +106,13 @@ impl Lowering<'_> {
     /// Adds an object, or the problems that keep it out. A model file adds one for each of its parts.
     fn object(&mut self, object: &scene::Object) {
         let Some(transform) = self.transform(&object.transform) else { return };
-        let shape = self.original(object);
+        let shape = &self.original(object).shape;
+        if let scene::Shape::Instance { of } = shape {
+            // Reading has seen to it; a description built in code may still do it.
+            let message = format!("there is no object `{}` with a shape of its own to repeat", of.text);
+            self.problems.push(error(self.source, object.span, message, "this instance"));
+            return;
+        }
         if let scene::Shape::Mesh { file, file_span, normals, group, force } = shape {
             self.mesh(
                 object,
@@ -132,17 +142,14 @@ impl Lowering<'_> {
         self.place(object, analytic, &transform, name, vec![material]);
     }
 
-    /// The shape, or of an instance the shape that it shares.
-    fn original<'o>(&self, object: &'o scene::Object) -> &'o scene::Shape
+    /// The object, or of an instance the one that it repeats.
+    fn original<'o>(&self, object: &'o scene::Object) -> &'o scene::Object
     where
-        Self: 'o,
+        'a: 'o,
     {
         match &object.shape {
-            scene::Shape::Instance { of } => {
-                let named = |o: &&scene::Object| o.name.as_ref().is_some_and(|name| name.text == of.text);
-                self.desc.objects.iter().find(named).map_or(&object.shape, |o| &o.shape)
-            }
-            shape => shape,
+            scene::Shape::Instance { of } => self.named.get(of.text.as_str()).copied().unwrap_or(object),
+            _ => object,
         }
     }
 
@@ -170,24 +177,23 @@ impl Lowering<'_> {
     /// The material that an object, or the original of an instance, chooses; `None` where it leaves the choice to a file.
     fn choice<'o>(&self, object: &'o scene::Object) -> Option<&'o MaterialChoice>
     where
-        Self: 'o,
+        'a: 'o,
     {
-        match (&object.material, &object.shape) {
-            (Some(choice), _) => Some(choice),
-            (None, scene::Shape::Instance { of }) => {
-                let named = |o: &&scene::Object| o.name.as_ref().is_some_and(|name| name.text == of.text);
-                self.desc.objects.iter().find(named).and_then(|o| o.material.as_ref())
-            }
-            (None, _) => None,
-        }
+        object.material.as_ref().or_else(|| self.original(object).material.as_ref())
     }
 
-    fn chosen(&mut self, choice: &MaterialChoice) -> Option<Material> {
+    /// The material of a choice that an object makes.
+    fn chosen(&mut self, choice: &MaterialChoice, object: &scene::Object) -> Option<Material> {
         let described = match choice {
-            MaterialChoice::Named(name) => self.matter.named(&name.text)?,
-            MaterialChoice::Inline(material) => {
-                return self.matter.material(material, self.source, &mut self.problems);
-            }
+            MaterialChoice::Inline(material) => material,
+            MaterialChoice::Named(name) => match self.matter.named(&name.text) {
+                Some(material) => material,
+                None => {
+                    let message = format!("there is no material `{}`", name.text);
+                    self.problems.push(error(self.source, object.span, message, "this object"));
+                    return None;
+                }
+            },
         };
         self.matter.material(described, self.source, &mut self.problems)
     }
@@ -203,7 +209,7 @@ impl Lowering<'_> {
             ));
             return None;
         };
-        self.chosen(&choice)
+        self.chosen(&choice, object)
     }
 
     #[expect(clippy::too_many_arguments, reason = "the fields of one variant, taken apart")]
@@ -218,7 +224,7 @@ impl Lowering<'_> {
         transform: &Transform,
     ) {
         let choice = self.choice(object).cloned();
-        let chosen = choice.as_ref().map(|choice| self.chosen(choice));
+        let chosen = choice.as_ref().map(|choice| self.chosen(choice, object));
         let path = self.folder.join(file);
         let (source, problems) = (self.source, &mut self.problems);
         let mut warn =
@@ -253,7 +259,8 @@ impl Lowering<'_> {
                 None => self.imported(&part.materials, object),
             };
             let report = MeshReport { object: name.clone(), ..part.report };
-            self.check_solid(&report, materials.iter().any(Material::is_dielectric), force, file_span);
+            let is_glass = materials.iter().any(Material::is_dielectric);
+            self.check_solid(&report, name.strip_prefix(&base), is_glass, force, file_span);
             self.reports.push(report);
             self.place(object, Shape::Mesh(part.mesh), transform, name, materials);
         }
@@ -279,23 +286,29 @@ impl Lowering<'_> {
         imported
     }
 
-    /// Glass needs an inside. A mesh without one is refused, or taken on demand.
+    /// Glass needs an inside. A mesh without one is refused, or taken on demand. `part` is a slash and the name of the part,
+    /// or nothing where there is only one.
     fn check_solid(
         &mut self,
         report: &MeshReport,
+        part: Option<&str>,
         is_glass: bool,
         force: bool,
         span: crate::diagnostic::Span,
     ) {
-        let file = report.file.display();
+        let mesh = match part.and_then(|part| part.strip_prefix('/')) {
+            Some(part) => format!("{}, part `{part}`,", report.file.display()),
+            None => report.file.display().to_string(),
+        };
         for mended in &report.mended {
-            self.problems.push(Diagnostic::warning(self.source.name(), format!("{file}: mended: {mended}")));
+            let message = format!("{mesh} was mended: {mended}");
+            self.problems.push(Diagnostic::warning(self.source.name(), message));
         }
         if !is_glass || report.closed {
             return;
         }
         let findings = report.findings.join("; ");
-        let message = format!("{file} does not enclose a volume, so glass has no inside: {findings}");
+        let message = format!("{mesh} does not enclose a volume, so glass has no inside: {findings}");
         let problem = if force {
             let message = format!("{message}. Rays that leave through the gaps are taken as if back outside");
             Diagnostic::warning(self.source.name(), message)

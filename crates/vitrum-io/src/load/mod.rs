@@ -121,7 +121,8 @@ pub fn scene_text(name: &str, text: &str, folder: &Path) -> Result<Loaded, LoadE
 /// [`LoadError`] when the model can't be read or has nothing to show.
 pub fn model_file(path: &Path, options: &ModelOptions) -> Result<Loaded, LoadError> {
     let file = obj::read(path)?;
-    let desc = model::frame(path, &file, options);
+    let desc = model::frame(path, &file, options)
+        .map_err(|reason| LoadError::Unreadable { path: path.to_owned(), reason })?;
     let name = path.display().to_string();
     let files = Meshes::holding(path, file);
     lower::lower(&desc, &Source::new(&name, ""), Path::new(""), files, Diagnostics::default())

@@ -40,10 +40,14 @@ impl Default for ModelOptions {
 /// Vertical field of view, degrees: a short telephoto.
 const FOV: f64 = 30.0;
 
-/// The description of a scene that shows the model `file`, which was read from `path`.
-pub(super) fn frame(path: &Path, file: &ObjFile, options: &ModelOptions) -> SceneDesc {
+/// Largest coordinate, and smallest extent, of a model around which a scene is built: their squares and cubes are numbers.
+const LARGEST: f64 = 1e100;
+const SMALLEST: f64 = 1e-100;
+
+/// The description of a scene that shows the model `file`, which was read from `path`; else why there is none.
+pub(super) fn frame(path: &Path, file: &ObjFile, options: &ModelOptions) -> Result<SceneDesc, String> {
     let bounds = bounds(file);
-    let (centre, size) = (bounds.centre(), bounds.extent().length().max(1e-12));
+    let (centre, size) = (bounds.centre(), size(&bounds)?);
     // The bounding sphere touches the picture's top and bottom, with a margin.
     let distance = 0.5 * size / libm::sin(0.5 * FOV.to_radians()) * 0.95;
     let towards_camera = unit(DVec3::new(0.35, 0.35, 1.0));
@@ -79,8 +83,8 @@ pub(super) fn frame(path: &Path, file: &ObjFile, options: &ModelOptions) -> Scen
             axes: [true, false, true],
         },
     }];
-    desc.objects = vec![model(path, file, options), floor(&bounds)];
-    desc
+    desc.objects = vec![model(path, file, options), floor(&bounds, size)];
+    Ok(desc)
 }
 
 fn model(path: &Path, file: &ObjFile, options: &ModelOptions) -> Object {

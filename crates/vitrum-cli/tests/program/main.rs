@@ -1,0 +1,9 @@
+//! The real program, run as a user runs it: what it writes, what it says, and how it ends.
+
+mod bad_input;
+mod bad_output;
+mod models;
+#[cfg(unix)]
+mod signals;
+mod talk;
+mod workplace;

@@ -1,0 +1,92 @@
+//! Every scene that comes with the program loads; and what only building a scene can find wrong is told, never passed over.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use vitrum_io::load::{self, Loaded};
+use vitrum_io::scene::{self, MaterialChoice, Name, SceneDesc, Shape};
+
+/// All scenes of a folder of the repository, sorted.
+fn scenes(folder: &str) -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(folder);
+    let entries = fs::read_dir(&folder).expect("the repository has this folder");
+    let paths = entries.map(|entry| entry.expect("readable").path());
+    let mut scenes: Vec<_> = paths.filter(|path| path.extension().is_some_and(|end| end == "toml")).collect();
+    scenes.sort();
+    scenes
+}
+
+#[test]
+fn every_scene_of_ours_loads() {
+    let mut problems = Vec::new();
+    for folder in [".", "gallery"] {
+        let scenes = scenes(folder);
+        assert!(!scenes.is_empty(), "scenes/{folder} has no scenes");
+        for path in scenes {
+            match load::scene_file(&path) {
+                Ok(Loaded { scene, .. }) if scene.names().is_empty() => {
+                    problems.push(format!("{}: there is nothing to see", path.display()));
+                }
+                Ok(_) => {}
+                Err(error) => problems.push(error.to_string()),
+            }
+        }
+    }
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
+const TWO_BALLS: &str = r#"
+[camera]
+type = "pinhole"
+position = [0, 0, 5]
+target = [0, 0, 0]
+fov = 40
+
+[[material]]
+name = "glass"
+type = "transparent"
+ior = 1.5
+
+[[object]]
+name = "ball"
+shape = "sphere"
+center = [0, 0, 0]
+radius = 1
+material = "glass"
+
+[[object]]
+name = "other ball"
+shape = "instance"
+of = "ball"
+transform = [{ translate = [3, 0, 0] }]
+"#;
+
+/// A description built in code can say what no file can.
+#[test]
+fn descriptions_that_refer_to_nothing_are_refused() {
+    let desc = || scene::parse("balls.toml", TWO_BALLS).0.expect("a good scene");
+    let said = |change: fn(&mut SceneDesc)| {
+        let mut desc = desc();
+        change(&mut desc);
+        load::description(&desc, Path::new("")).expect_err("refused").to_string()
+    };
+    let loaded = load::description(&desc(), Path::new("")).expect("unchanged, it is good");
+    assert_eq!(loaded.scene.names(), ["ball", "other ball"]);
+
+    let unknown = said(|desc| desc.objects[1].shape = Shape::Instance { of: Name::new("bell") });
+    assert!(unknown.contains("there is no object `bell` with a shape of its own"), "{unknown}");
+    let itself = said(|desc| desc.objects[0].shape = Shape::Instance { of: Name::new("ball") });
+    assert!(itself.contains("there is no object `ball` with a shape of its own"), "{itself}");
+    let material = said(|desc| desc.objects[0].material = Some(MaterialChoice::Named(Name::new("gloss"))));
+    assert!(material.contains("there is no material `gloss`"), "{material}");
+    let none = said(|desc| desc.objects[0].material = None);
+    assert!(none.contains("the object has no material"), "{none}");
+    let twice = said(|desc| desc.objects[1].name = Some(Name::new("ball")));
+    assert!(twice.contains("two objects are named `ball`"), "{twice}");
+}
+
+#[test]
+fn scenes_named_by_a_missing_file_or_folder_say_so() {
+    let said = |path: &Path| load::scene_file(path).expect_err("there is no scene").to_string();
+    assert!(said(Path::new("no/such.toml")).contains("no/such.toml: there is no such scene file"));
+    assert!(said(Path::new(env!("CARGO_MANIFEST_DIR"))).contains("is a folder, expected a scene file"));
+}
