@@ -1,5 +1,5 @@
-//! The gallery shows what it says: every scene renders, and what its comment claims is checked against a closed form or
-//! against another picture.
+//! The gallery shows what it says: every scene renders, and what the pictures 1 and 3 to 7 claim is checked against a
+//! closed form or against another picture.
 
 mod bubble;
 mod compound;

@@ -42,7 +42,7 @@ pub(super) fn lower(
 ) -> Result<Loaded, LoadError> {
     let mut lowering = Lowering {
         desc,
-        named: desc.objects.iter().filter_map(|o| Some((o.name.as_ref()?.text.as_str(), o))).collect(),
+        named: objects_by_name(desc),
         source,
         folder,
         matter: Matter::new(desc),
@@ -335,6 +335,11 @@ impl<'a> Lowering<'a> {
             }
         }
     }
+}
+
+/// The objects that have a name; of several of one name the first.
+fn objects_by_name(desc: &SceneDesc) -> BTreeMap<&str, &scene::Object> {
+    desc.objects.iter().rev().filter_map(|o| Some((o.name.as_ref()?.text.as_str(), o))).collect()
 }
 
 fn analytic(shape: &scene::Shape) -> Result<Shape, ShapeError> {
