@@ -41,13 +41,13 @@ fn sphere(centre: DVec3, radius: f64) -> Shape {
     Shape::Sphere(Sphere::new(centre, radius).expect("the radius is positive"))
 }
 
-/// A tetrahedron of spheres that almost touch.
+/// A tetrahedron of spheres that stand apart, so that a ray inside one can meet nothing else.
 fn four_spheres() -> Aggregate {
     let corners = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
-    aggregate(corners.map(|c| sphere(DVec3::from_array(c), 1.4)))
+    aggregate(corners.map(|c| sphere(DVec3::from_array(c), 0.95)))
 }
 
-/// A thousand small spheres in a cube, a third of them overlapping a neighbour.
+/// A thousand small spheres in a cube, more than half of them overlapping a neighbour.
 fn thousand_spheres() -> Aggregate {
     let mut uniform = Uniform::new(1);
     let mut number = || uniform.number() * 2.0 - 1.0;

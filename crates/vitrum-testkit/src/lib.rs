@@ -1,7 +1,7 @@
 //! What the tests of the vitrum crates measure with: statistics for samplers, and differences between images.
 //!
 //! - [`chi_square`]: do the directions of a sampler follow the density that it claims?
-//! - [`z_test`]: is a measured mean the expected one, given its standard error?
+//! - [`z_test()`]: is a measured mean the expected one, given its standard error?
 //! - [`sphere`]: cells of the unit sphere, and integrals over them.
 //! - [`image_difference`]: largest error, RMSE and relMSE of an image against its reference.
 //! - [`significance`]: p-values, and the correction for asking many questions at once.

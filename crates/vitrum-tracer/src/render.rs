@@ -14,7 +14,7 @@ use vitrum_math::{NodeKey, Purpose, Rgb, SampleAddress};
 pub trait Progress: Sync {
     /// A tile is done: so many more samples and rays.
     fn advance(&self, samples: u64, rays: u64);
-    /// True when the render should stop with what there is.
+    /// True when the render should stop with what there is. Asked before every pixel.
     fn is_stopped(&self) -> bool {
         false
     }
@@ -42,7 +42,7 @@ pub struct Rendering {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
-    /// An image without pixels, or with more than 2³¹.
+    /// An image without pixels, or with more than 2²⁸.
     #[error(
         "an image of {0} × {1} pixels can't be rendered: each side must be at least 1 and all pixels at most 2^28"
     )]
@@ -77,11 +77,9 @@ pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Re
     };
     for samples in rounds(settings.spp) {
         let work = |tile: &Crop| {
-            (!progress.is_stopped()).then(|| {
-                let done = render_tile(scene, settings, &plan, *tile, samples.clone());
-                progress.advance(done.1.samples, done.1.rays());
-                done
-            })
+            let done = render_tile(scene, settings, &plan, *tile, samples.clone(), progress)?;
+            progress.advance(done.1.samples, done.1.rays());
+            Some(done)
         };
         let done: Vec<_> = match &pool {
             None => tiles.iter().map(work).collect(),
@@ -131,19 +129,23 @@ fn tiles(settings: &Settings) -> Vec<Crop> {
         .collect()
 }
 
-/// The sums of a range of samples over a tile, row by row.
+/// The sums of a range of samples over a tile, row by row; `None` when the render is to stop before the tile is done.
 fn render_tile(
     scene: &Scene,
     settings: &Settings,
     plan: &Plan,
     tile: Crop,
     samples: Range<u32>,
-) -> (Vec<Pixel>, Stats) {
+    progress: &dyn Progress,
+) -> Option<(Vec<Pixel>, Stats)> {
     let mut walker = Walker::new(scene, settings, plan);
     let mut pixels = Vec::with_capacity(tile.width as usize * tile.height as usize);
     let mut sum = PixelSum::default();
     for y in tile.y..tile.y + tile.height {
         for x in tile.x..tile.x + tile.width {
+            if progress.is_stopped() {
+                return None;
+            }
             sum.clear();
             for sample in samples.clone() {
                 let address = SampleAddress::new(settings.seed, x, y, sample);
@@ -163,7 +165,7 @@ fn render_tile(
             pixels.push(Pixel { sum: sum.total(), counted: sum.counted, given_up: sum.given_up });
         }
     }
-    (pixels, walker.stats)
+    Some((pixels, walker.stats))
 }
 
 /// A sample as the film takes it, rounded once; `None` when it is not finite or negative.
