@@ -8,8 +8,11 @@ use crate::tree::{BoxTree, UnitFrame};
 use std::ops::ControlFlow;
 use vitrum_math::Bounds;
 
-/// Up to this many bounded objects are tried one by one; more stand in a tree.
-const FLAT_LIMIT: usize = 16;
+/// Bounded objects are tried one by one while their costs sum to at most this; more stand in a tree. Measured: spheres are
+/// worth sweeping up to about 24, other shapes up to about 3 (`benches/README.md`).
+const FLAT_LIMIT: usize = 24;
+const SPHERE_COST: usize = 1;
+const OTHER_COST: usize = 8;
 
 /// What a ray hits first.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -121,7 +124,9 @@ impl Aggregate {
             (0u32..).zip(&objects).filter_map(|(id, o)| o.bounds().map(|b| (id, b))).collect();
         let bounds = bounded.iter().fold(Bounds::EMPTY, |all, (_, b)| all.union(*b));
         let isolated = isolated(&objects, &bounded);
-        let is_flat = bounded.len() <= FLAT_LIMIT;
+        let cost =
+            |id: u32| if objects[id as usize].as_sphere().is_some() { SPHERE_COST } else { OTHER_COST };
+        let is_flat = bounded.iter().map(|(id, _)| cost(*id)).sum::<usize>() <= FLAT_LIMIT;
         let (mut spheres, mut flat) = (Vec::new(), Vec::new());
         for (id, object) in (0u32..).zip(&objects).filter(|(_, o)| is_flat || o.bounds().is_none()) {
             match object.as_sphere() {
