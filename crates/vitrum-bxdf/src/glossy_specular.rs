@@ -3,7 +3,7 @@
 //! | parameter | meaning | range |
 //! |---|---|---|
 //! | `ks` | value of f in the mirror direction, per channel | ks ≥ 0 |
-//! | `exponent` | sharpness | ≥ 1 |
+//! | `exponent` | sharpness | 1 to 1e6 |
 //!
 //! f = ks · max(0, r·wo)^exponent, with r the mirror direction of `wi`, where `wo` and `wi` are on the same side.
 //! Energy: at most 2π ks / (exponent + 1), so that the highlight of a sharp lobe stays as bright as that of a blunt one and
@@ -19,7 +19,7 @@ use crate::{Density, Lobe, Real, Sample, Vector};
 pub struct GlossySpecular<R: Real> {
     /// Value of f in the mirror direction, per channel.
     pub ks: R::Vec3,
-    /// Sharpness, at least one.
+    /// Sharpness, 1 to 1e6.
     pub exponent: R,
 }
 

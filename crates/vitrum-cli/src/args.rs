@@ -154,7 +154,7 @@ impl Model {
         self.ior.is_some() && !matches!(self.material, None | Some(MaterialChoice::Glass))
     }
 
-    pub(crate) fn options(&self) -> ModelOptions {
+    pub(crate) fn options(&self, size: Option<[u32; 2]>) -> ModelOptions {
         let default = ModelOptions::default();
         ModelOptions {
             material: match self.material {
@@ -163,6 +163,7 @@ impl Model {
                 Some(MaterialChoice::File) => ModelMaterial::File,
             },
             ior: self.ior.unwrap_or(default.ior),
+            size: size.unwrap_or(default.size),
             normals: self.normals.map(|n| match n {
                 NormalsChoice::Smooth => Normals::Smooth,
                 NormalsChoice::Flat => Normals::Flat,

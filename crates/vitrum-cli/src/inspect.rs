@@ -13,7 +13,7 @@ use vitrum_math::{DVec3, Rgb};
 use vitrum_tracer::{Falloff, Light, Plan, Projection};
 
 pub(crate) fn run(arguments: &Inspect) -> Result<ExitCode, Failure> {
-    let loaded = input::load(arguments.scene.as_deref(), &arguments.model)?;
+    let loaded = input::load(arguments.scene.as_deref(), &arguments.model, None)?;
     let mut report = String::new();
     // Writing to a String can't fail.
     let _ = describe(&mut report, &loaded);

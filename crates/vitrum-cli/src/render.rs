@@ -24,7 +24,7 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
     // Before anything that takes long: a picture that can't be written is not worth rendering.
     image::check_writable(&arguments.output)?;
     let interrupt = Interrupt::listen()?;
-    let loaded = input::load(arguments.scene.as_deref(), &arguments.model)?;
+    let loaded = input::load(arguments.scene.as_deref(), &arguments.model, arguments.size)?;
     if !arguments.quiet {
         say(&loaded.warnings.to_string());
     }

@@ -183,11 +183,12 @@ impl Aggregate {
         nearest.found()
     }
 
-    /// The isolated convex solid that the ray starts inside of, if it does.
+    /// The isolated convex solid that the ray starts inside of, if it does and is still there.
     #[inline]
     fn enclosing(&self, query: &Query) -> Option<u32> {
         let departed = query.departed.as_ref()?;
-        (departed.behind && self.isolated[departed.object as usize]).then_some(departed.object)
+        let inside = departed.behind && !query.has_passed() && self.isolated[departed.object as usize];
+        inside.then_some(departed.object)
     }
 
     /// True when anything is hit nearer than `limit` metres.
@@ -215,15 +216,18 @@ impl Aggregate {
 
 /// Which objects are convex solids that touch no other object's bounds.
 fn isolated(objects: &[Object], bounded: &[(u32, Bounds)]) -> Vec<bool> {
-    // Sweep along x: bounds that overlap there are compared in full.
+    // Sweep along the longest axis of the scene: bounds that overlap there are compared in full.
+    let all = bounded.iter().fold(Bounds::EMPTY, |all, (_, b)| all.union(*b));
+    let extent = all.extent();
+    let axis = (0..3).max_by(|&a, &b| extent[a].total_cmp(&extent[b])).unwrap_or(0);
     let mut order: Vec<usize> = (0..bounded.len()).collect();
-    order.sort_by(|&a, &b| bounded[a].1.min.x.total_cmp(&bounded[b].1.min.x));
+    order.sort_by(|&a, &b| bounded[a].1.min[axis].total_cmp(&bounded[b].1.min[axis]));
     let mut touched = vec![false; objects.len()];
     for (rank, &a) in order.iter().enumerate() {
         let (id, bounds) = bounded[a];
         for &b in &order[rank + 1..] {
             let (other_id, other) = bounded[b];
-            if other.min.x > bounds.max.x {
+            if other.min[axis] > bounds.max[axis] {
                 break;
             }
             if bounds.touches(&other) {
@@ -243,8 +247,9 @@ fn isolated(objects: &[Object], bounded: &[(u32, Bounds)]) -> Vec<bool> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::interaction::Side;
     use crate::shape::{Plane, Shape, Sphere};
-    use vitrum_math::{DVec3, Transform};
+    use vitrum_math::{DVec3, Ray, Transform};
 
     fn object(shape: Shape) -> Object {
         Object::new(shape, &Transform::IDENTITY, false).expect("valid")
@@ -252,6 +257,22 @@ mod tests {
 
     fn sphere(x: f64, y: f64) -> Object {
         object(Shape::Sphere(Sphere::new(DVec3::new(x, y, 0.0), 1.0).expect("valid")))
+    }
+
+    /// A ray that goes straight through the wall of an isolated solid meets what stands beyond it.
+    #[test]
+    fn beyond_an_isolated_solid_the_world_goes_on() {
+        let aggregate = Aggregate::new(vec![sphere(0.0, 1.5), sphere(8.0, 1.5)]);
+        assert_eq!(aggregate.isolated, [true, true]);
+        let mut counters = Counters::default();
+        let camera = Query::new(Ray::new(DVec3::new(-5.0, 1.5, 0.0), DVec3::X));
+        let hit = aggregate.closest(&camera, &mut counters).expect("the first sphere");
+        let mut query = aggregate.interaction(&camera, &hit).leave(DVec3::X, Side::Transmitted);
+        let exit = aggregate.closest(&query, &mut counters).expect("its far wall");
+        assert_eq!((exit.object, exit.t), (0, 2.0));
+        query.pass(exit.t, exit.object, exit.face);
+        let next = aggregate.closest(&query, &mut counters).expect("the second sphere");
+        assert_eq!((next.object, next.t), (1, 8.0));
     }
 
     #[test]

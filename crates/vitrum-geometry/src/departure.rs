@@ -48,6 +48,12 @@ impl Query {
         self.passed = (t, object, face);
     }
 
+    /// True when the ray has gone straight through something: it may be anywhere by now.
+    #[inline]
+    pub(crate) fn has_passed(&self) -> bool {
+        self.passed.0 > f64::NEG_INFINITY
+    }
+
     /// True for a hit that lies ahead and has not been passed.
     #[inline]
     pub(crate) fn admits(&self, t: f64, object: u32, face: u32) -> bool {

@@ -60,12 +60,17 @@ impl Object {
     }
 
     /// True for a shape with an inside that is convex, whatever its transform.
-    pub(crate) fn is_convex_solid(&self) -> bool {
+    pub fn is_convex_solid(&self) -> bool {
         match &self.shape {
             Shape::Sphere(_) | Shape::Cuboid(_) => true,
             Shape::Cylinder(cylinder) => cylinder.is_capped(),
             Shape::Plane(_) | Shape::Disk(_) | Shape::Rectangle(_) | Shape::Mesh(_) => false,
         }
+    }
+
+    /// True when its outside is turned inward.
+    pub fn is_flipped(&self) -> bool {
+        self.flipped
     }
 
     /// False when an infinite object certainly stays outside of the bounds.
@@ -172,7 +177,7 @@ impl Object {
         let ns = shading.filter(|n| n.dot(ng) > 0.0).map_or(ng, unit);
         let (ng, ns) = if self.flipped { (-ng, -ns) } else { (ng, ns) };
         let wo = -query.ray.direction;
-        let front = wo.dot(ng) > 0.0;
+        let front = wo.dot(ng) >= 0.0;
         let flipped = self.flipped;
         SurfaceInteraction { point, wo, ng, ns, front, object: hit.object, face: hit.face, flipped, error }
     }

@@ -78,19 +78,16 @@ impl SampleAddress {
     }
 }
 
-/// The second dimension of the Sobol' sequence: bit `i` of the index adds column `i` of Pascal's triangle modulo 2,
-/// which is the bits of the previous column folded onto themselves.
+/// The second dimension of the Sobol' sequence: bit `i` of the index adds column `i` of Pascal's triangle modulo 2. Column
+/// `i + 2^k` is column `i` folded once more by `2^k` bits, so that all columns are added by halves.
 #[inline]
 fn sobol_second(index: u32) -> u32 {
-    let mut column = 1u32 << 31;
-    let mut point = 0;
-    let mut rest = index;
-    while rest != 0 {
-        point ^= column & (rest & 1).wrapping_neg();
-        rest >>= 1;
-        column ^= column >> 1;
-    }
-    point
+    let x = index ^ index >> 16;
+    let x = x ^ (x >> 8 & 0x00ff_00ff);
+    let x = x ^ (x >> 4 & 0x0f0f_0f0f);
+    let x = x ^ (x >> 2 & 0x3333_3333);
+    let x = x ^ (x >> 1 & 0x5555_5555);
+    x.reverse_bits()
 }
 
 /// Nested uniform scrambling: every bit is flipped, or not, by a hash of the bits above it and the seed.
@@ -156,6 +153,21 @@ mod tests {
         let mut cells: Vec<u32> = points.map(|[u, v]| (v * 32.0) as u32 * 32 + (u * 32.0) as u32).collect();
         cells.sort_unstable();
         assert_eq!(cells, (0..1024).collect::<Vec<_>>());
+    }
+
+    /// Against the definition: each column is the last one folded onto itself by one bit.
+    #[test]
+    fn the_second_dimension_is_pascals_triangle() {
+        let by_columns = |index: u32| {
+            let columns = std::iter::successors(Some(1u32 << 31), |column| Some(column ^ column >> 1));
+            (0..32)
+                .zip(columns)
+                .filter(|(bit, _)| index >> bit & 1 == 1)
+                .fold(0, |point, (_, column)| point ^ column)
+        };
+        for i in (0..70_000).chain((0..32).map(|bit| 1 << bit)).chain([u32::MAX, 0xdead_beef]) {
+            assert_eq!(sobol_second(i), by_columns(i), "{i}");
+        }
     }
 
     #[test]

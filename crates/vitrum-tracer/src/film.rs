@@ -18,7 +18,9 @@ pub(crate) struct PixelSum {
     subtrees: Vec<(u32, Rgb)>,
     block: Rgb,
     in_block: u32,
-    /// Samples that count.
+    /// Samples taken.
+    pub(crate) taken: u32,
+    /// Samples that count: those that were not dropped.
     pub(crate) counted: u32,
     /// Weight of the subtrees of rays that were not followed, summed over the samples.
     pub(crate) given_up: f64,
@@ -37,6 +39,7 @@ impl PixelSum {
             self.block += Rgb::from_array(sample.map(f64::from));
             self.counted += 1;
         }
+        self.taken += 1;
         self.in_block += 1;
         if self.in_block == BLOCK {
             let (mut level, mut sum) = (0, self.block);
@@ -79,6 +82,7 @@ pub struct Film {
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Pixel {
     pub(crate) sum: Rgb,
+    pub(crate) taken: u32,
     pub(crate) counted: u32,
     pub(crate) given_up: f64,
 }
@@ -96,6 +100,7 @@ impl Film {
                 (row - self.area.y) as usize * self.area.width as usize + (tile.x - self.area.x) as usize;
             for (pixel, sum) in self.pixels[start..].iter_mut().zip(sums) {
                 pixel.sum += sum.sum;
+                pixel.taken += sum.taken;
                 pixel.counted += sum.counted;
                 pixel.given_up += sum.given_up;
             }
@@ -119,14 +124,14 @@ impl Film {
         self.pixels.iter().map(mean).collect()
     }
 
-    /// The smallest number of samples that count in any pixel.
+    /// The smallest number of samples taken in any pixel.
     pub fn fewest_samples(&self) -> u32 {
-        self.pixels.iter().map(|p| p.counted).min().unwrap_or(0)
+        self.pixels.iter().map(|p| p.taken).min().unwrap_or(0)
     }
 
     /// How much weight was not followed.
     pub fn given_up(&self) -> GivenUp {
-        let of = |p: &Pixel| if p.counted == 0 { 0.0 } else { p.given_up / f64::from(p.counted) };
+        let of = |p: &Pixel| if p.taken == 0 { 0.0 } else { p.given_up / f64::from(p.taken) };
         let sum: f64 = self.pixels.iter().map(of).sum();
         let largest = self.pixels.iter().map(of).fold(0.0, f64::max);
         GivenUp { mean: sum / self.pixels.len() as f64, largest }

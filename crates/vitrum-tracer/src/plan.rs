@@ -1,6 +1,7 @@
 //! What a scene needs, and what it can skip.
 //!
-//! Decided once, before the first ray. A skipped feature executes none of its instructions.
+//! Decided once, before the first ray. The ray tree asks it for lights and ambient light; the rest is decided where it is
+//! built (trees, isolated solids, lens, normals) and told here.
 
 use crate::scene::Scene;
 use crate::settings::{Settings, ShadowMode};
@@ -78,8 +79,19 @@ impl Plan {
     }
 }
 
-/// The brightest background or emission, if no surface amplifies.
+/// The brightest background or emission, if no surface amplifies. Weights are free of the radiance factor: they bound the
+/// missing radiance only where a ray that was cut off is in no thinner medium than the camera. That is certain for solids
+/// that are denser than what surrounds them.
 fn radiance_bound(scene: &Scene) -> Option<f64> {
+    for (id, object) in (0u32..).zip(scene.aggregate().objects()) {
+        for material in scene.materials_of(id) {
+            if let Material::Transparent(t) = material
+                && (t.interface.eta() < 1.0 || !object.is_convex_solid() || object.is_flipped())
+            {
+                return None;
+            }
+        }
+    }
     let mut bound = scene.background.brightest();
     for material in scene.materials() {
         match material {

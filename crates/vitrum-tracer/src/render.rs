@@ -14,7 +14,7 @@ use vitrum_math::{NodeKey, Purpose, Rgb, SampleAddress};
 pub trait Progress: Sync {
     /// A tile is done: so many more samples and rays.
     fn advance(&self, samples: u64, rays: u64);
-    /// True when the render should stop with what there is. Asked before every pixel.
+    /// True when the render should stop with what there is. Asked before every sample.
     fn is_stopped(&self) -> bool {
         false
     }
@@ -143,11 +143,11 @@ fn render_tile(
     let mut sum = PixelSum::default();
     for y in tile.y..tile.y + tile.height {
         for x in tile.x..tile.x + tile.width {
-            if progress.is_stopped() {
-                return None;
-            }
             sum.clear();
             for sample in samples.clone() {
+                if progress.is_stopped() {
+                    return None;
+                }
                 let address = SampleAddress::new(settings.seed, x, y, sample);
                 let [dx, dy] = address.pair(NodeKey::ROOT, Purpose::Film);
                 let lens = || address.pair(NodeKey::ROOT, Purpose::Lens);
@@ -162,7 +162,12 @@ fn render_tile(
                 sum.given_up += walker.given_up;
             }
             walker.stats.samples += samples.len() as u64;
-            pixels.push(Pixel { sum: sum.total(), counted: sum.counted, given_up: sum.given_up });
+            pixels.push(Pixel {
+                sum: sum.total(),
+                taken: sum.taken,
+                counted: sum.counted,
+                given_up: sum.given_up,
+            });
         }
     }
     Some((pixels, walker.stats))

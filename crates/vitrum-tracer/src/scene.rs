@@ -50,7 +50,7 @@ pub struct Scene {
     pub background: Background,
     /// Radiance that arrives everywhere from everywhere.
     pub ambient: Rgb,
-    /// Lights, in the order of their names.
+    /// Lights; sums over them are formed in this order.
     pub lights: Vec<Light>,
     /// What surrounds everything.
     pub medium: IndexOfRefraction,
@@ -58,7 +58,7 @@ pub struct Scene {
 
 impl Scene {
     /// A scene of `objects`, seen by `camera`, dark and empty otherwise. Objects are sorted by name; those that nothing can see
-    /// are left out. Lights that are dark are left out as well.
+    /// are left out.
     ///
     /// # Errors
     /// [`SceneError`] for duplicate names and objects without a material.

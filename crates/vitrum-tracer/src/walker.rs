@@ -147,5 +147,5 @@ fn side(child: &Sample<f64>) -> Side {
 /// The interpolated normal, unless the viewer is behind it.
 #[inline]
 fn shading_normal(surface: &SurfaceInteraction) -> DVec3 {
-    if (surface.wo.dot(surface.ns) > 0.0) == surface.front { surface.ns } else { surface.ng }
+    if (surface.wo.dot(surface.ns) >= 0.0) == surface.front { surface.ns } else { surface.ng }
 }

@@ -24,8 +24,11 @@ pub struct TriangleMesh {
     tree: BoxTree,
 }
 
+/// Largest coordinate of a mesh, in its own units.
+const LARGEST: f64 = 1e100;
+
 /// A mesh that can't be traced.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshError {
     /// No triangle with an area.
@@ -38,6 +41,16 @@ pub enum MeshError {
         count: usize,
         /// Index of the first, from 0.
         first: usize,
+    },
+    /// A coordinate so large that products of a few of them overflow.
+    #[error(
+        "vertex {first} has the coordinate {coordinate:e}, the largest is {LARGEST:e}; scale the mesh down"
+    )]
+    TooFar {
+        /// Index of the first such vertex, from 0.
+        first: usize,
+        /// Its largest coordinate, in magnitude.
+        coordinate: f64,
     },
     /// A corner that names a vertex or normal that does not exist.
     #[error("triangle {triangle} names a vertex or normal that does not exist")]
@@ -67,10 +80,7 @@ impl TriangleMesh {
     /// # Errors
     /// [`MeshError`] for a mesh that is empty, not finite, too large, or has indices out of range.
     pub fn new(data: &MeshData) -> Result<Self, MeshError> {
-        let count = data.positions.iter().filter(|p| !p.is_finite()).count();
-        if let Some(first) = data.positions.iter().position(|p| !p.is_finite()) {
-            return Err(MeshError::NotFinite { count, first });
-        }
+        Self::check_positions(data)?;
         if u32::try_from(data.triangles.len()).is_err() {
             return Err(MeshError::TooLarge(data.triangles.len()));
         }
@@ -117,6 +127,22 @@ impl TriangleMesh {
             vec![]
         };
         Ok(Self { frame, bounds, vertices, triangles, normals, normal_triangles, materials, tree })
+    }
+
+    /// Looks at the vertices alone: what comes before any arithmetic with them.
+    ///
+    /// # Errors
+    /// [`MeshError`] for a vertex that is not finite, or too far away.
+    pub fn check_positions(data: &MeshData) -> Result<(), MeshError> {
+        let count = data.positions.iter().filter(|p| !p.is_finite()).count();
+        if let Some(first) = data.positions.iter().position(|p| !p.is_finite()) {
+            return Err(MeshError::NotFinite { count, first });
+        }
+        let farthest = |p: &DVec3| p.abs().max_element();
+        match data.positions.iter().position(|p| farthest(p) > LARGEST) {
+            Some(first) => Err(MeshError::TooFar { first, coordinate: farthest(&data.positions[first]) }),
+            None => Ok(()),
+        }
     }
 
     /// The box around it, in its own units.

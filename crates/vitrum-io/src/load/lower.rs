@@ -310,7 +310,9 @@ impl<'a> Lowering<'a> {
         let findings = report.findings.join("; ");
         let message = format!("{mesh} does not enclose a volume, so glass has no inside: {findings}");
         let problem = if force {
-            let message = format!("{message}. Rays that leave through the gaps are taken as if back outside");
+            let message = format!(
+                "{message}. A ray that leaves through a gap counts as still inside, and is dimmer by 1/ior² for it"
+            );
             Diagnostic::warning(self.source.name(), message)
         } else {
             error(self.source, span, message, "this mesh")

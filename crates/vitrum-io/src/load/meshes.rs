@@ -170,6 +170,7 @@ fn prepare(
     materials: &[MtlMaterial],
     normals: Normals,
 ) -> Result<Prepared, MeshError> {
+    TriangleMesh::check_positions(&part.mesh)?;
     let mut data = part.mesh.clone();
     // Numbers of the file become positions in the list of those that the part uses.
     let mut used: Vec<u32> = data.materials.clone();

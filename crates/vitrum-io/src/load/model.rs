@@ -29,11 +29,13 @@ pub struct ModelOptions {
     pub ior: f64,
     /// The normals that it is shaded with; `None` for the file's, and smooth ones where it has none.
     pub normals: Option<Normals>,
+    /// Width and height of the picture, pixels: the model fits into it.
+    pub size: [u32; 2],
 }
 
 impl Default for ModelOptions {
     fn default() -> Self {
-        Self { material: ModelMaterial::Glass, ior: 1.5, normals: None }
+        Self { material: ModelMaterial::Glass, ior: 1.5, normals: None, size: [640, 640] }
     }
 }
 
@@ -48,8 +50,11 @@ const SMALLEST: f64 = 1e-100;
 pub(super) fn frame(path: &Path, file: &ObjFile, options: &ModelOptions) -> Result<SceneDesc, String> {
     let bounds = bounds(file);
     let (centre, size) = (bounds.centre(), size(&bounds)?);
-    // The bounding sphere touches the picture's top and bottom, with a margin.
-    let distance = 0.5 * size / libm::sin(0.5 * FOV.to_radians()) * 0.95;
+    // The bounding sphere keeps a margin to the nearer borders of the picture.
+    let [width, height] = options.size;
+    let narrow = (f64::from(width) / f64::from(height)).min(1.0);
+    let half_angle = libm::atan(libm::tan(0.5 * FOV.to_radians()) * narrow);
+    let distance = 0.5 * size / libm::sin(half_angle) * 1.02;
     let towards_camera = unit(DVec3::new(0.35, 0.35, 1.0));
     let mut desc = SceneDesc::new(Camera {
         span: Span::default(),
@@ -60,7 +65,7 @@ pub(super) fn frame(path: &Path, file: &ObjFile, options: &ModelOptions) -> Resu
         lens: Lens::Pinhole { fov: FOV },
     });
     // Light through a solid, around a bend, and out again.
-    desc.render = Render { size: [640, 640], max_depth: 12, cutoff: 1e-2, ..Render::default() };
+    desc.render = Render { size: options.size, max_depth: 12, cutoff: 1e-2, ..Render::default() };
     desc.output = Output { tone: Tone::Neutral, ..desc.output };
     desc.background = Background::Gradient { bottom: Rgb::splat(0.25), top: Rgb::new(0.75, 0.85, 1.0) };
     desc.lights = vec![

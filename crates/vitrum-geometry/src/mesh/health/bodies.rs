@@ -80,7 +80,8 @@ impl Bodies {
             // What the sum can have lost: a product of three lengths for each face. A sheet's two sides
             // cancel to that.
             let (low, high) = body.bounds;
-            let rounding = body.triangles as f64 * f64::EPSILON * (high - low).length().powi(3);
+            let size = (high - low).length();
+            let rounding = body.triangles as f64 * f64::EPSILON * (size * size * size);
             if body.volume.abs() <= rounding {
                 body.volume = 0.0;
             }

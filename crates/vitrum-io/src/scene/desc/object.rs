@@ -99,7 +99,7 @@ pub enum Shape {
         /// Whether an open or damaged mesh is taken as solid glass.
         force: bool,
     },
-    /// The shape of another object, before that object's transform.
+    /// The shape of another object, without that object's transform and `flip`.
     Instance {
         /// That object, which is not itself an instance.
         of: Name,

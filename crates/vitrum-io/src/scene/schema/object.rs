@@ -139,7 +139,7 @@ pub const OBJECT: Table = Table {
             },
             Variant {
                 name: "instance",
-                meaning: "The shape of another object once more, before that object's own transform; it costs no \
+                meaning: "The shape of another object once more, without that object's own transform and `flip`; it costs no \
                           memory.",
                 keys: &[
                     Key::new("of", Kind::Reference(Realm::Object), "that object; not itself an instance"),
