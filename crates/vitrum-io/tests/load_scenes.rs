@@ -2,8 +2,9 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use vitrum_io::diagnostic::Span;
 use vitrum_io::load::{self, Loaded};
-use vitrum_io::scene::{self, MaterialChoice, Name, SceneDesc, Shape};
+use vitrum_io::scene::{self, ColourOrTexture, Material, MaterialChoice, Model, Name, SceneDesc, Shape};
 
 /// All scenes of a folder of the repository, sorted.
 fn scenes(folder: &str) -> Vec<PathBuf> {
@@ -80,6 +81,15 @@ fn descriptions_that_refer_to_nothing_are_refused() {
     assert!(material.contains("there is no material `gloss`"), "{material}");
     let none = said(|desc| desc.objects[0].material = None);
     assert!(none.contains("the object has no material"), "{none}");
+    let surroundings = said(|desc| desc.surroundings = Name::new("wine"));
+    assert!(surroundings.contains("there is no medium `wine`"), "{surroundings}");
+    let texture = said(|desc| {
+        let color = ColourOrTexture::Texture(Name::new("tiles"));
+        let model = Model::Matte { color, ka: 1.0, kd: 1.0 };
+        let material = Material { span: Span::default(), name: None, model };
+        desc.objects[0].material = Some(MaterialChoice::Inline(Box::new(material)));
+    });
+    assert!(texture.contains("there is no texture `tiles`"), "{texture}");
     let twice = said(|desc| desc.objects[1].name = Some(Name::new("ball")));
     assert!(twice.contains("two objects are named `ball`"), "{twice}");
 }

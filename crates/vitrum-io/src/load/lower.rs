@@ -52,6 +52,9 @@ pub(super) fn lower(
         objects: Vec::new(),
         reports: Vec::new(),
     };
+    if let Err(reason) = lowering.matter.medium_of(&desc.surroundings) {
+        lowering.problems.push(error(source, desc.surroundings.span, reason, "what surrounds everything"));
+    }
     for object in &desc.objects {
         lowering.object(object);
     }

@@ -49,19 +49,27 @@ impl<'d> Matter<'d> {
         self.materials.get(name).copied()
     }
 
-    fn texture(&self, of: &ColourOrTexture) -> Texture {
+    fn texture(&self, of: &ColourOrTexture) -> Result<Texture, String> {
         match of {
-            ColourOrTexture::Colour(colour) => Texture::Constant(*colour),
-            // Reading has checked the name; a description built in code that names nothing gets white.
+            ColourOrTexture::Colour(colour) => Ok(Texture::Constant(*colour)),
+            // Reading has checked the name; a description built in code may name nothing.
             ColourOrTexture::Texture(name) => {
-                self.textures.get(name.text.as_str()).copied().unwrap_or(Texture::Constant(Rgb::ONE))
+                let known = self.textures.get(name.text.as_str()).copied();
+                known.ok_or_else(|| format!("there is no texture `{}`", name.text))
             }
         }
     }
 
-    fn phong(&self, p: &scene::Phong) -> Phong {
-        let colour = self.texture(&p.color);
-        Phong { colour, ka: p.ka, kd: p.kd, ks: Rgb::splat(p.ks), exponent: p.exponent }
+    /// The index of the medium of that name.
+    pub(super) fn medium_of(&self, name: &scene::Name) -> Result<IndexOfRefraction, String> {
+        let known = self.media.get(name.text.as_str());
+        let index = known.ok_or_else(|| format!("there is no medium `{}`", name.text))?;
+        IndexOfRefraction::new(*index).map_err(|e| e.to_string())
+    }
+
+    fn phong(&self, p: &scene::Phong) -> Result<Phong, String> {
+        let colour = self.texture(&p.color)?;
+        Ok(Phong { colour, ka: p.ka, kd: p.kd, ks: Rgb::splat(p.ks), exponent: p.exponent })
     }
 
     /// The material behind a description; problems are told at its place.
@@ -71,36 +79,30 @@ impl<'d> Matter<'d> {
         source: &Source<'_>,
         problems: &mut Diagnostics,
     ) -> Option<Material> {
-        Some(match &material.model {
+        let material = self.model(&material.model).map_err(|reason| {
+            problems.push(super::error(source, material.span, reason, "this material"));
+        });
+        material.ok()
+    }
+
+    fn model(&self, model: &Model) -> Result<Material, String> {
+        Ok(match model {
             Model::Matte { color, ka, kd } => {
-                Material::Matte(Phong { colour: self.texture(color), ka: *ka, kd: *kd, ..Phong::NONE })
+                Material::Matte(Phong { colour: self.texture(color)?, ka: *ka, kd: *kd, ..Phong::NONE })
             }
-            Model::Phong(phong) => Material::Phong(self.phong(phong)),
-            Model::Reflective { phong, kr } => Material::Reflective { phong: self.phong(phong), kr: *kr },
-            Model::Emissive { radiance } => Material::Emissive { radiance: self.texture(radiance) },
+            Model::Phong(phong) => Material::Phong(self.phong(phong)?),
+            Model::Reflective { phong, kr } => Material::Reflective { phong: self.phong(phong)?, kr: *kr },
+            Model::Emissive { radiance } => Material::Emissive { radiance: self.texture(radiance)? },
             Model::Transparent { phong, kr, kt, ior, outside } => {
-                let outside = outside.as_ref().and_then(|name| self.media.get(name.text.as_str()));
-                let above = outside.copied().unwrap_or(self.medium.value());
-                match self.interface(above, *ior) {
-                    Ok(interface) => Material::Transparent(Transparent {
-                        phong: self.phong(phong),
-                        kr: *kr,
-                        kt: *kt,
-                        interface,
-                    }),
-                    Err(reason) => {
-                        let label = "this index is relative to the medium outside";
-                        problems.push(super::error(source, material.span, reason, label));
-                        return None;
-                    }
-                }
+                let above = outside.as_ref().map_or(Ok(self.medium), |name| self.medium_of(name))?;
+                let interface = self.interface(above, *ior)?;
+                Material::Transparent(Transparent { phong: self.phong(phong)?, kr: *kr, kt: *kt, interface })
             }
         })
     }
 
     /// The interface of a solid with an index `relative` to what is outside: made absolute here, so that it has no history.
-    fn interface(&self, above: f64, relative: f64) -> Result<Interface<f64>, String> {
-        let above = IndexOfRefraction::new(above).map_err(|e| e.to_string())?;
+    fn interface(&self, above: IndexOfRefraction, relative: f64) -> Result<Interface<f64>, String> {
         let below = above.times(relative).map_err(|e| e.to_string())?;
         Interface::new(above.value(), below.value()).map_err(|e| e.to_string())
     }
@@ -120,7 +122,7 @@ impl<'d> Matter<'d> {
                 phong: Phong::NONE,
                 kr: Rgb::splat(MODEL_KR),
                 kt: tint * MODEL_KT,
-                interface: self.interface(self.medium.value(), ior)?,
+                interface: self.interface(self.medium, ior)?,
             }),
         })
     }
