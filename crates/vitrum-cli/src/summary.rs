@@ -71,12 +71,12 @@ pub(crate) fn summary(rendering: &Rendering, phases: &Phases, output: &Path) -> 
             given_up.mean, given_up.largest
         ),
     );
-    if stats.geometry.contradictions > 0 || stats.normal_fallbacks > 0 {
+    if stats.geometry.neighbours_ignored > 0 || stats.normal_fallbacks > 0 {
         line(
             "rare",
             format!(
                 "{} neighbouring faces passed over at edges, {} interpolated normals replaced by geometric ones",
-                stats.geometry.contradictions, stats.normal_fallbacks
+                stats.geometry.neighbours_ignored, stats.normal_fallbacks
             ),
         );
     }

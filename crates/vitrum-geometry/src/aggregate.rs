@@ -32,7 +32,7 @@ pub struct Hit {
 pub struct Counters {
     /// Faces within the rounding error of a ray's origin that the ray can't cross, given the face that it leaves; they were
     /// ignored.
-    pub contradictions: u64,
+    pub neighbours_ignored: u64,
 }
 
 /// The nearest hit so far: the smallest (t, object, face).

@@ -2,25 +2,15 @@
 //! as what the file says. What `expectations/obj.toml` says must load does, without a lost sample; what it says is refused stays so.
 //! Needs the folder of assets: `VITRUM_ASSETS`.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::{Duration, Instant};
 use toml::de::DeTable;
 use vitrum_io::load::{self, Loaded, ModelMaterial, ModelOptions};
-use vitrum_testkit::assets;
+use vitrum_testkit::{assets, files_with_extension};
 use vitrum_tracer::{Settings, render};
 
 /// Folder of the assets for each section of the table.
 const FOLDERS: [(&str, &str); 3] = [("obj", "obj"), ("bad-mesh", "bad-mesh"), ("malformed", "malformed/obj")];
-
-/// All OBJ files of a folder, sorted.
-fn obj_files(folder: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(folder).expect("the assets have this folder");
-    let paths = entries.map(|entry| entry.expect("readable").path());
-    let mut files: Vec<_> = paths.filter(|path| path.extension().is_some_and(|end| end == "obj")).collect();
-    files.sort();
-    files
-}
 
 /// Loads and renders a model. What is wrong with the outcome, if anything.
 fn show(path: &Path, material: ModelMaterial, refused: Option<&str>) -> Result<(), String> {
@@ -62,7 +52,7 @@ fn every_model_of_the_assets_is_shown_or_refused() {
     let mut times: Vec<(Duration, String)> = Vec::new();
     for (section, folder) in FOLDERS {
         let rows = table[section].get_ref().as_table().expect("a section of the table");
-        for path in obj_files(&assets.join(folder)) {
+        for path in files_with_extension(&assets.join(folder), "obj") {
             let name = path.file_name().expect("a file has a name").to_string_lossy().into_owned();
             let Some(row) = rows.get(name.as_str()).and_then(|row| row.get_ref().as_table()) else {
                 problems.push(format!("{section}/{name} is not in the table"));

@@ -4,26 +4,17 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 use toml::de::{DeTable, DeValue};
 use vitrum_io::obj::{self, ObjFile};
 use vitrum_math::DVec3;
-use vitrum_testkit::assets;
+use vitrum_testkit::{assets, files_with_extension};
 
 /// Folder of the assets for each section of the table.
 const FOLDERS: [(&str, &str); 3] = [("obj", "obj"), ("bad-mesh", "bad-mesh"), ("malformed", "malformed/obj")];
-
-/// All OBJ files of a folder, sorted.
-fn obj_files(folder: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(folder).expect("the assets have this folder");
-    let paths = entries.map(|entry| entry.expect("readable").path());
-    let mut files: Vec<_> = paths.filter(|path| path.extension().is_some_and(|end| end == "obj")).collect();
-    files.sort();
-    files
-}
 
 /// A row of the table. Numbers are kept as text, as they stand there.
 struct Row<'a>(&'a DeTable<'a>);
@@ -108,7 +99,7 @@ fn every_file_of_the_assets_does_what_the_table_says() {
     let mut seen = BTreeMap::new();
     for (section, folder) in FOLDERS {
         let rows = table[section].get_ref().as_table().expect("a section of the table");
-        for path in obj_files(&assets.join(folder)) {
+        for path in files_with_extension(&assets.join(folder), "obj") {
             let name = path.file_name().expect("a file has a name").to_string_lossy().into_owned();
             *seen.entry(section).or_insert(0) += 1;
             let Some(row) = rows.get(name.as_str()).and_then(|row| row.get_ref().as_table()).map(Row) else {
@@ -271,8 +262,11 @@ fn damaged_files_never_panic() {
     let Some(assets) = assets() else { return };
     let mut originals = Vec::new();
     for (_, folder) in FOLDERS {
-        originals
-            .extend(obj_files(&assets.join(folder)).iter().map(|path| fs::read(path).expect("readable")));
+        originals.extend(
+            files_with_extension(&assets.join(folder), "obj")
+                .iter()
+                .map(|path| fs::read(path).expect("readable")),
+        );
     }
     originals.retain(|bytes| bytes.len() < 100_000);
     assert!(originals.len() > 20);

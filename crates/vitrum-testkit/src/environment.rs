@@ -4,7 +4,7 @@
 //!   repository. Unset or `none`, the tests that need it say so and pass.
 //! - `VITRUM_BLESS`: set to `1`, tests write the expected outputs instead of comparing with them.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The folder of test assets, or `None` after saying on stderr that the test is skipped.
 ///
@@ -21,6 +21,19 @@ pub fn assets() -> Option<PathBuf> {
         skipped();
     }
     found
+}
+
+/// The files of a folder whose names end in `.extension`, sorted.
+///
+/// # Panics
+/// If the folder cannot be read: a test that finds no files must not pass.
+pub fn files_with_extension(folder: &Path, extension: &str) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
+    let paths = entries.map(|entry| entry.expect("an entry of a readable folder").path());
+    let mut files: Vec<_> =
+        paths.filter(|path| path.extension().is_some_and(|end| end == extension)).collect();
+    files.sort();
+    files
 }
 
 /// Whether expected outputs are to be written (`VITRUM_BLESS=1`) instead of compared.

@@ -67,7 +67,7 @@ impl Stats {
         self.shadow_rays += other.shadow_rays;
         self.deepest = self.deepest.max(other.deepest);
         self.normal_fallbacks += other.normal_fallbacks;
-        self.geometry.contradictions += other.geometry.contradictions;
+        self.geometry.neighbours_ignored += other.geometry.neighbours_ignored;
         self.dropped += other.dropped;
         self.first_dropped = match (self.first_dropped, other.first_dropped) {
             (Some(a), Some(b)) => Some(a.min(b)),

@@ -270,7 +270,7 @@ impl TriangleMesh {
             let distance = (met.t * along).abs() / normal.dot(normal).sqrt();
             if distance <= departed.error {
                 if !self.goes_through_neighbour(departed, ray.exact.origin, &corners, along < 0.0) {
-                    counters.contradictions += 1;
+                    counters.neighbours_ignored += 1;
                     return None;
                 }
                 t = t.max(0.0);
