@@ -1,32 +1,52 @@
-//! Phong's highlight in its original, unnormalised form.
+//! Phong's highlight, in its original form and in one that keeps its energy.
 //!
 //! | parameter | meaning | range |
 //! |---|---|---|
-//! | `ks` | value of f in the mirror direction, per channel | ks ≥ 0 |
+//! | `peak` | value of f in the mirror direction, per channel | ≥ 0 |
 //! | `exponent` | sharpness | 1 to 1e6 |
 //!
-//! f = ks · max(0, r·wo)^exponent, with r the mirror direction of `wi`, where `wo` and `wi` are on the same side.
-//! Energy: at most 2π ks / (exponent + 1), so that the highlight of a sharp lobe stays as bright as that of a blunt one and
-//! the reflected share falls. Reciprocal. A look, not a measurement.
+//! f = peak · max(0, r·wo)^exponent, with r the mirror direction of `wi`, where `wo` and `wi` are on the same side.
+//! Reciprocal. A look, not a measurement. Two ways to choose the peak:
+//!
+//! - [`unnormalised`](GlossySpecular::unnormalised): peak = ks, as in textbooks. Energy at most 2π ks/(exponent + 1): the
+//!   highlight of a sharp lobe stays as bright as that of a blunt one, and the reflected share falls.
+//! - [`normalised`](GlossySpecular::normalised): peak = ρ (exponent + 2)/2π. Energy ρ along the normal, less elsewhere: the
+//!   sharper the lobe, the brighter its highlight, until it is a mirror.
+//!
 //! Sources: B. Phong, Illumination for Computer Generated Pictures, 1975; K. Suffern, Ray Tracing from the Ground Up,
-//! 2007, chapter 15. Sampling of the lobe: E. Lafortune and Y. Willems, Using the Modified Phong Reflectance Model
-//! for Physically Based Rendering, 1994.
+//! 2007, chapter 15. Normalisation and sampling of the lobe: E. Lafortune and Y. Willems, Using the Modified Phong
+//! Reflectance Model for Physically Based Rendering, 1994.
 
+use crate::valid::debug_assert_unit;
 use crate::{Density, Lobe, Real, Sample, Vector};
 
 /// A highlight around the mirror direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GlossySpecular<R: Real> {
     /// Value of f in the mirror direction, per channel.
-    pub ks: R::Vec3,
+    pub peak: R::Vec3,
     /// Sharpness, 1 to 1e6.
     pub exponent: R,
 }
 
 impl<R: Real> GlossySpecular<R> {
+    /// The textbook's highlight: `ks` is the value of f in the mirror direction, whatever the exponent.
+    pub fn unnormalised(ks: R::Vec3, exponent: R) -> Self {
+        Self { peak: ks, exponent }
+    }
+
+    /// A highlight that returns the share `reflectance` (0 to 1 per channel) of the light along the normal, and less at an
+    /// angle.
+    pub fn normalised(reflectance: R::Vec3, exponent: R) -> Self {
+        let two = R::from_f64(2.0);
+        Self { peak: reflectance * ((exponent + two) / (two * R::pi())), exponent }
+    }
+
     /// cos of the angle between `wo` and the mirror direction of `wi`, raised to the exponent; zero on other sides.
     #[inline]
     fn lobe(&self, wo: R::Vec3, wi: R::Vec3) -> R {
+        debug_assert_unit::<R>(wo);
+        debug_assert_unit::<R>(wi);
         let cos = wo.z() * wi.z() - wo.x() * wi.x() - wo.y() * wi.y();
         // ln c ≤ c − 1: below this bound the power is less than any positive number, and comes out as zero anyway.
         let vanishes = self.exponent * (cos - R::one()) < R::smallest_logarithm();
@@ -40,7 +60,7 @@ impl<R: Real> GlossySpecular<R> {
     /// f · |cos θi|, per steradian.
     #[inline]
     pub fn eval(&self, wo: R::Vec3, wi: R::Vec3) -> R::Vec3 {
-        self.ks * (self.lobe(wo, wi) * wi.z().abs())
+        self.peak * (self.lobe(wo, wi) * wi.z().abs())
     }
 
     /// (exponent + 1)/2π · cos^exponent around the mirror direction of `wo`, per steradian. Integrates to less than one:

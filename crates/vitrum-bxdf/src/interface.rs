@@ -12,7 +12,8 @@
 //! Total internal reflection is e² ≤ 0, exactly the radicand that the refracted direction needs: the verdict and the
 //! direction can't disagree. Relative error of cos θt: 3e-16 in f64, 1.8e-7 in f32, at any angle.
 
-use crate::{Real, Vector};
+use crate::fresnel::dielectric;
+use crate::{Real, Reflectance, Vector};
 use core::fmt;
 
 /// The surface between the medium above (outside, z > 0) and the one below (inside, z < 0).
@@ -26,19 +27,20 @@ pub struct Interface<R> {
 
 /// One direction of travel through an interface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Crossing<R> {
+pub(crate) struct Crossing<R> {
     /// η = n_t / n_i.
-    eta: R,
+    pub(crate) eta: R,
     /// η² − 1.
-    k: R,
-    /// The cosine of the critical angle, leading part; used for η < 1 only.
-    critical_hi: R,
+    pub(crate) k: R,
+    /// The cosine of the critical angle, leading part; zero for η ≥ 1.
+    pub(crate) critical_hi: R,
     /// What `critical_hi` lacks.
     critical_lo: R,
 }
 
 /// An index of refraction that is not a positive finite number, or a pair whose ratio is out of range.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct IndexError {
     /// The index above.
     pub above: f64,
@@ -104,6 +106,22 @@ impl<R: Real> Interface<R> {
         self.downward.eta == R::one()
     }
 
+    /// The direction of travel of a ray that comes from that side.
+    #[inline]
+    pub(crate) fn crossing(&self, from_above: bool) -> &Crossing<R> {
+        if from_above { &self.downward } else { &self.upward }
+    }
+
+    /// The reflected shares of light that arrives at this angle: `cos` in [-1, 1] is the z component of `wo`, whose sign
+    /// says from which side. One in total internal reflection.
+    #[inline]
+    pub fn reflectance(&self, cos: R) -> Reflectance<R> {
+        let crossing = self.crossing(cos >= R::zero());
+        let c = cos.abs();
+        let e_squared = crossing.e_squared(c);
+        if e_squared <= R::zero() { Reflectance::total() } else { crossing.reflectance(c, e_squared.sqrt()) }
+    }
+
     /// The ray that goes on when `wo` points back along the incoming one. `wo` is a unit vector; its side decides the
     /// direction of travel, and z = 0 counts as above.
     ///
@@ -111,7 +129,7 @@ impl<R: Real> Interface<R> {
     #[inline]
     pub fn refract(&self, wo: R::Vec3) -> Refraction<R> {
         let from_above = wo.z() >= R::zero();
-        let crossing = if from_above { &self.downward } else { &self.upward };
+        let crossing = self.crossing(from_above);
         let e_squared = crossing.e_squared(wo.z().abs());
         // Zero is total reflection: at exactly the critical angle nothing crosses.
         if e_squared <= R::zero() {
@@ -138,9 +156,15 @@ impl<R: Real> Crossing<R> {
         }
     }
 
+    /// Reflected shares for cos θi = `c` and `e` = η cos θt > 0.
+    #[inline]
+    pub(crate) fn reflectance(&self, c: R, e: R) -> Reflectance<R> {
+        dielectric(c, e, self.k)
+    }
+
     /// e² = (η cos θt)² for cos θi = `c` ≥ 0; zero or less in total internal reflection.
     #[inline]
-    fn e_squared(&self, c: R) -> R {
+    pub(crate) fn e_squared(&self, c: R) -> R {
         if self.k >= R::zero() {
             c * c + self.k
         } else {

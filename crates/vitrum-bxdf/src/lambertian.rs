@@ -7,6 +7,7 @@
 //! f = ρ/π where `wo` and `wi` are on the same side, else 0. Energy: ρ. Reciprocal. Both sides reflect.
 //! Source: J. Lambert, Photometria, 1760.
 
+use crate::valid::debug_assert_unit;
 use crate::{Density, Lobe, Real, Sample, Vector};
 
 /// Reflects the same radiance in every direction.
@@ -26,6 +27,8 @@ impl<R: Real> Lambertian<R> {
     /// |cos θi| / π, per steradian, on `wo`'s side.
     #[inline]
     pub fn pdf(&self, wo: R::Vec3, wi: R::Vec3) -> R {
+        debug_assert_unit::<R>(wo);
+        debug_assert_unit::<R>(wi);
         if wo.z() * wi.z() > R::zero() { wi.z().abs() / R::pi() } else { R::zero() }
     }
 

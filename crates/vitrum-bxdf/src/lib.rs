@@ -40,23 +40,40 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
-#[cfg(test)]
+#[cfg(any(test, feature = "std"))]
 extern crate std;
 
+#[cfg(not(any(feature = "std", feature = "libm")))]
+compile_error!("vitrum-bxdf needs the feature `std` or, on targets without the standard library, `libm`");
+
 mod bxdf;
+mod compensation;
+mod conductor;
+mod fresnel;
+mod fresnel_dielectric;
+mod ggx;
 mod glossy_specular;
 mod interface;
 mod lambertian;
 mod perfect_specular;
 mod perfect_transmitter;
 mod real;
+mod rough_dielectric;
 mod sample;
+mod thin_dielectric;
+mod valid;
 
 pub use bxdf::Bxdf;
+pub use conductor::Conductor;
+pub use fresnel::{ComplexIndex, ComplexIndexError, Reflectance};
+pub use fresnel_dielectric::FresnelDielectric;
+pub use ggx::{Ggx, RoughnessError};
 pub use glossy_specular::GlossySpecular;
 pub use interface::{IndexError, Interface, Refraction};
 pub use lambertian::Lambertian;
 pub use perfect_specular::PerfectSpecular;
 pub use perfect_transmitter::PerfectTransmitter;
 pub use real::{Real, Vector};
+pub use rough_dielectric::RoughDielectric;
 pub use sample::{Density, Lobe, Sample, Split, TransportMode};
+pub use thin_dielectric::ThinDielectric;

@@ -7,6 +7,7 @@
 //! f = kr δ(wi − mirror(wo)) / |cos θi|. Energy: kr. Reciprocal. Mirrors on both sides.
 //! Source: K. Suffern, Ray Tracing from the Ground Up, 2007, chapter 24.
 
+use crate::valid::debug_assert_unit;
 use crate::{Real, Sample, Split, Vector};
 
 /// Reflects `kr` of the light in exactly the mirror direction.
@@ -20,6 +21,7 @@ impl<R: Real> PerfectSpecular<R> {
     /// The mirror direction; `None` when nothing is reflected.
     #[inline]
     pub fn sample(&self, wo: R::Vec3) -> Option<Sample<R>> {
+        debug_assert_unit::<R>(wo);
         (!self.kr.is_zero()).then(|| Sample::mirror(wo, self.kr))
     }
 

@@ -11,6 +11,7 @@
 //! Fresnel dielectric. Energy: kr + kt. Reciprocal with the factor n² that every refracting surface has.
 //! Source: K. Suffern, Ray Tracing from the Ground Up, 2007, chapter 27.
 
+use crate::valid::debug_assert_unit;
 use crate::{Density, Interface, Lobe, Real, Refraction, Sample, Split, TransportMode, Vector};
 
 /// Reflects `kr` and transmits `kt`; reflects everything in total internal reflection.
@@ -28,6 +29,7 @@ impl<R: Real> PerfectTransmitter<R> {
     /// Both children. A zero coefficient has none.
     #[inline]
     pub fn split(&self, wo: R::Vec3, mode: TransportMode) -> Split<R> {
+        debug_assert_unit::<R>(wo);
         match self.interface.refract(wo) {
             Refraction::TotalInternalReflection => {
                 Split { reflected: Some(Sample::mirror(wo, R::Vec3::splat(R::one()))), transmitted: None }
@@ -48,18 +50,7 @@ impl<R: Real> PerfectTransmitter<R> {
     /// One child, chosen by `uc` in [0, 1) in proportion to the mean coefficients.
     #[inline]
     pub fn sample(&self, wo: R::Vec3, uc: R, mode: TransportMode) -> Option<Sample<R>> {
-        match self.split(wo, mode) {
-            Split { reflected: Some(reflected), transmitted: Some(transmitted) } => {
-                let p = self.kr.mean() / (self.kr.mean() + self.kt.mean());
-                let (chosen, probability) = if uc < p { (reflected, p) } else { (transmitted, R::one() - p) };
-                Some(Sample {
-                    weight: chosen.weight / probability,
-                    pdf: Density::Discrete(probability),
-                    ..chosen
-                })
-            }
-            Split { reflected, transmitted } => reflected.or(transmitted),
-        }
+        self.split(wo, mode).choose(uc, self.kr.mean(), self.kt.mean())
     }
 }
 

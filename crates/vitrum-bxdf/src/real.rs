@@ -1,7 +1,7 @@
 //! The two scalars that the models are written for, and their vectors.
 //!
-//! Square roots are correctly rounded (IEEE 754) and every transcendental function comes from `libm`, so that results
-//! are the same on every machine.
+//! Square roots are correctly rounded (IEEE 754) whoever computes them, and every transcendental function comes from `libm`,
+//! so that results are the same on every machine and with every choice of features.
 
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
@@ -48,6 +48,8 @@ pub trait Real:
 
     /// The exponential of anything below this is zero.
     fn smallest_logarithm() -> Self;
+    /// The distance from one to the next larger number.
+    fn epsilon() -> Self;
 
     /// Zero.
     #[inline]
@@ -68,6 +70,16 @@ pub trait Real:
     #[inline]
     fn at_least(self, other: Self) -> Self {
         if self < other { other } else { self }
+    }
+    /// The smaller of two; `self` where `other` is NaN.
+    #[inline]
+    fn at_most(self, other: Self) -> Self {
+        if self > other { other } else { self }
+    }
+    /// `self` times itself.
+    #[inline]
+    fn squared(self) -> Self {
+        self * self
     }
 }
 
@@ -101,6 +113,33 @@ pub trait Vector<R>:
     fn is_zero(self) -> bool;
     /// Mean of the components.
     fn mean(self) -> R;
+
+    /// Each component as `f` maps it.
+    #[inline]
+    fn map(self, mut f: impl FnMut(R) -> R) -> Self {
+        Self::new(f(self.x()), f(self.y()), f(self.z()))
+    }
+    /// `f` of the components of two, one by one.
+    #[inline]
+    fn zip(self, other: Self, mut f: impl FnMut(R, R) -> R) -> Self {
+        Self::new(f(self.x(), other.x()), f(self.y(), other.y()), f(self.z(), other.z()))
+    }
+    /// The vector of length one in this direction, which is not zero.
+    #[inline]
+    fn normalised(self) -> Self
+    where
+        R: Real<Vec3 = Self>,
+    {
+        self / self.dot(self).sqrt()
+    }
+    /// Mirrored at the surface: the z component with the other sign.
+    #[inline]
+    fn mirrored(self) -> Self
+    where
+        R: Real<Vec3 = Self>,
+    {
+        Self::new(self.x(), self.y(), -self.z())
+    }
 }
 
 macro_rules! real {
@@ -138,6 +177,10 @@ macro_rules! real {
             #[inline]
             fn smallest_logarithm() -> Self {
                 $smallest_logarithm
+            }
+            #[inline]
+            fn epsilon() -> Self {
+                <$real>::EPSILON
             }
         }
 
@@ -178,5 +221,19 @@ macro_rules! real {
     };
 }
 
-real!(f32, Vec3, libm::sqrtf, libm::powf, libm::sincosf, -105.0);
-real!(f64, DVec3, libm::sqrt, libm::pow, libm::sincos, -746.0);
+#[cfg(feature = "std")]
+mod root {
+    pub(super) fn single(x: f32) -> f32 {
+        x.sqrt()
+    }
+    pub(super) fn double(x: f64) -> f64 {
+        x.sqrt()
+    }
+}
+#[cfg(not(feature = "std"))]
+mod root {
+    pub(super) use libm::{sqrt as double, sqrtf as single};
+}
+
+real!(f32, Vec3, root::single, libm::powf, libm::sincosf, -105.0);
+real!(f64, DVec3, root::double, libm::pow, libm::sincos, -746.0);

@@ -34,17 +34,35 @@ pub enum Density<R> {
     SolidAngle(R),
 }
 
-/// Which part of a model a direction comes from.
+/// Which part of a model a direction comes from: what happened to the light, and how sharply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Lobe {
     /// Reflection over the whole hemisphere.
     DiffuseReflection,
-    /// Reflection about the mirror direction.
+    /// Reflection about the mirror direction, with a density.
     GlossyReflection,
+    /// Transmission about the refracted direction, with a density.
+    GlossyTransmission,
     /// Reflection in exactly the mirror direction.
     SpecularReflection,
     /// Transmission in exactly the refracted direction.
     SpecularTransmission,
+}
+
+impl Lobe {
+    /// True where the direction lies on the other side of the surface.
+    #[inline]
+    pub const fn is_transmission(self) -> bool {
+        matches!(self, Self::GlossyTransmission | Self::SpecularTransmission)
+    }
+
+    /// True where the direction is one of finitely many: its density is [`Density::Discrete`], and neither `eval` nor `pdf`
+    /// knows it.
+    #[inline]
+    pub const fn is_specular(self) -> bool {
+        matches!(self, Self::SpecularReflection | Self::SpecularTransmission)
+    }
 }
 
 /// A direction that light may come from, chosen by a model.
@@ -74,6 +92,12 @@ impl<R: Real> Sample<R> {
             eta: R::one(),
         }
     }
+
+    /// The same direction, chosen with this probability only: its weight grows to make up for it.
+    #[inline]
+    fn with_probability(self, probability: R) -> Self {
+        Self { weight: self.weight / probability, pdf: Density::Discrete(probability), ..self }
+    }
 }
 
 /// The specular children of a ray, each chosen with certainty; `None` where a child would carry nothing.
@@ -88,4 +112,21 @@ pub struct Split<R: Real> {
 impl<R: Real> Split<R> {
     /// No children.
     pub const NONE: Self = Self { reflected: None, transmitted: None };
+
+    /// One child, chosen by `uc` in [0, 1): the reflected one with `reflection / (reflection + transmission)`, numbers that
+    /// are positive where there are two children.
+    #[inline]
+    pub(crate) fn choose(self, uc: R, reflection: R, transmission: R) -> Option<Sample<R>> {
+        match self {
+            Self { reflected: Some(reflected), transmitted: Some(transmitted) } => {
+                let p = reflection / (reflection + transmission);
+                Some(if uc < p {
+                    reflected.with_probability(p)
+                } else {
+                    transmitted.with_probability(R::one() - p)
+                })
+            }
+            Self { reflected, transmitted } => reflected.or(transmitted),
+        }
+    }
 }

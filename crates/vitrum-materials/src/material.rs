@@ -76,7 +76,7 @@ impl Phong {
         Scattering {
             ambient: colour * self.ka,
             diffuse: unless_zero(reflectance, Lambertian { reflectance }),
-            glossy: unless_zero(ks, GlossySpecular { ks, exponent: self.exponent }),
+            glossy: unless_zero(ks, GlossySpecular::unnormalised(ks, self.exponent)),
             ..Scattering::BLACK
         }
     }
