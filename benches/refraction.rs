@@ -84,7 +84,7 @@ fn split(criterion: &mut Criterion) {
 fn any_model(chosen: f64) -> Bxdf<f64> {
     match (4.0 * chosen) as u32 {
         0 => Bxdf::Lambertian(Lambertian { reflectance: DVec3::splat(0.5) }),
-        1 => Bxdf::GlossySpecular(GlossySpecular { ks: DVec3::splat(0.2), exponent: 2000.0 }),
+        1 => Bxdf::GlossySpecular(GlossySpecular::unnormalised(DVec3::splat(0.2), 2000.0)),
         2 => Bxdf::PerfectSpecular(PerfectSpecular { kr: DVec3::splat(0.5) }),
         _ => Bxdf::PerfectTransmitter(glass()),
     }
@@ -101,7 +101,7 @@ fn density(criterion: &mut Criterion) {
     for (name, model) in [("diffuse", any_model(0.0)), ("highlight", any_model(0.25))] {
         measure(criterion, &format!("eval/{name}"), INPUTS, || {
             for (wo, wi) in outgoing.iter().zip(&incoming) {
-                black_box(black_box(&model).eval(*wo, *wi));
+                black_box(black_box(&model).eval(*wo, *wi, TransportMode::Radiance));
             }
         });
         measure(criterion, &format!("sample/{name}"), INPUTS, || {

@@ -2,10 +2,9 @@
 //! `src/compensation/grid.rs`.
 //!
 //! E(wo) is the mean weight of the model's own sampling, ∫∫ [F G2(wo, wr) + (1 − F) G2(wo, wt)]/G1(wo) du dv over the unit
-//! square that chooses the microscopic normal, where a direction on the wrong side counts nothing. The integrand jumps
-//! where a direction changes sides and bends where total reflection begins, so the interval of the azimuth is halved
-//! towards these places; between them, and over the other number, Gauss-Legendre quadrature does. Absolute error about
-//! 1e-3 at worst, far less on average. In f64, with libm alone, so that every machine makes the same table.
+//! square that chooses the microscopic normal, where a direction on the wrong side counts nothing. The integrand bends
+//! where a direction changes sides and where total reflection begins, so intervals are halved towards these places; between
+//! them Gauss-Legendre quadrature does. In f64, with libm alone, so that every machine makes the same table.
 //!
 //! This is the isotropic model written a second time, on purpose: the furnace test of the model tests both.
 
@@ -17,6 +16,12 @@ use grid::{COSINES, RATIOS, ROUGHNESSES, Side};
 use libm::{cos, sin, sqrt};
 use std::fmt::Write;
 use std::{env, fs, path::Path, thread};
+
+/// Gauss-Legendre quadrature within an interval: abscissae in [0, 1] and weights.
+type Rule = [(f64, f64); 3];
+
+/// How often an interval is halved towards a change of kind.
+const DEPTH: u32 = 5;
 
 /// The least albedo that is made up for in full (see the manual of `RoughDielectric`).
 const LEAST_ALBEDO: f64 = 1.0 / 16.0;
@@ -51,7 +56,7 @@ fn main() {
 
 /// The albedos of one roughness: by ratio, side and cosine.
 fn strip(roughness: usize) -> Vec<f64> {
-    let (inner, outer) = (gauss_legendre::<3>(), gauss_legendre::<32>());
+    let rule: Rule = gauss_legendre();
     let at = |index: usize, count: usize| index as f64 / (count - 1) as f64;
     let alpha = inverse(at(roughness, ROUGHNESSES), grid::LEAST_ALPHA, 1.0, grid::of_roughness);
     let mut albedos = Vec::with_capacity(RATIOS * 2 * COSINES);
@@ -65,7 +70,7 @@ fn strip(roughness: usize) -> Vec<f64> {
             for cosine in 0..COSINES {
                 let mu = inverse(at(cosine, COSINES), 0.0, 1.0, |mu| grid::of_cosine(mu, alpha, q / n, side));
                 // Along the surface itself the integrand is a limit too.
-                albedos.push(View::new(mu.max(1e-6), alpha, eta).albedo(&inner, &outer));
+                albedos.push(View::new(mu.max(1e-6), alpha, eta).albedo(&rule));
             }
         }
     }
@@ -97,37 +102,16 @@ impl View {
         Self { mu, sin, alpha, eta, stretched: sqrt(mu * mu + alpha * alpha * sin * sin) }
     }
 
-    fn albedo(&self, inner: &[(f64, f64)], outer: &[(f64, f64)]) -> f64 {
-        const CELLS: usize = 3;
-        let over_azimuth = |v: f64| {
-            let mut sum = 0.0;
-            for cell in 0..CELLS {
-                let border = |index: usize| {
-                    (index as f64 / CELLS as f64, self.weight(index as f64 / CELLS as f64, v).0)
-                };
-                sum += self.integrate(v, border(cell), border(cell + 1), inner, 6);
-            }
-            sum
-        };
-        outer.iter().map(|&(v, weight)| weight * over_azimuth(v)).sum()
+    /// The integral over the unit square.
+    fn albedo(&self, rule: &Rule) -> f64 {
+        // Over the azimuth alone everything is monotonous in its cosine, so the integral over it bends only where the fate
+        // changes at one of its ends.
+        let ends = |v: f64| [self.weight(0.0, v).0, self.weight(1.0, v).0];
+        integrate(&|v| self.over_azimuth(v, rule), &ends, rule)
     }
 
-    /// The integral over the azimuth between two places of known fates.
-    fn integrate(&self, v: f64, low: (f64, Fate), high: (f64, Fate), rule: &[(f64, f64)], depth: u32) -> f64 {
-        let width = high.0 - low.0;
-        if low.1 == high.1 {
-            return rule
-                .iter()
-                .map(|&(x, weight)| weight * width * self.weight(low.0 + x * width, v).1)
-                .sum();
-        }
-        let middle = 0.5 * (low.0 + high.0);
-        let (fate, weight) = self.weight(middle, v);
-        if depth == 0 {
-            return width * weight;
-        }
-        let middle = (middle, fate);
-        self.integrate(v, low, middle, rule, depth - 1) + self.integrate(v, middle, high, rule, depth - 1)
+    fn over_azimuth(&self, v: f64, rule: &Rule) -> f64 {
+        integrate(&|u| self.weight(u, v).1, &|u| self.weight(u, v).0, rule)
     }
 
     /// What the normal at (u, v) does, and the weight of both children together. The azimuth πu covers one half of the
@@ -169,6 +153,35 @@ impl View {
         }
         (fate, weight)
     }
+}
+
+/// The integral over [0, 1] of a function that is smooth where its kind stays the same.
+fn integrate<K: Copy + PartialEq>(f: &dyn Fn(f64) -> f64, kind: &dyn Fn(f64) -> K, rule: &Rule) -> f64 {
+    const CELLS: usize = 3;
+    let border = |index: usize| {
+        let x = index as f64 / CELLS as f64;
+        (x, kind(x))
+    };
+    (0..CELLS).map(|cell| refine(f, kind, rule, border(cell), border(cell + 1), DEPTH)).sum()
+}
+
+/// Over an interval, which is halved as long as its ends are of different kinds.
+fn refine<K: Copy + PartialEq>(
+    f: &dyn Fn(f64) -> f64,
+    kind: &dyn Fn(f64) -> K,
+    rule: &Rule,
+    low: (f64, K),
+    high: (f64, K),
+    depth: u32,
+) -> f64 {
+    if depth > 0 && low.1 != high.1 {
+        let middle = 0.5 * (low.0 + high.0);
+        let middle = (middle, kind(middle));
+        return refine(f, kind, rule, low, middle, depth - 1)
+            + refine(f, kind, rule, middle, high, depth - 1);
+    }
+    let width = high.0 - low.0;
+    rule.iter().map(|&(x, weight)| weight * width * f(low.0 + x * width)).sum()
 }
 
 /// Where an increasing function takes this value, by bisection.

@@ -6,8 +6,8 @@
 //! | `roughness` | distribution of microscopic normals | [`Ggx`] |
 //!
 //! f = F(wo·m) D(m) G2(wo, wi)/(4 |cos θo cos θi|) with m half-way between both; smooth where [`Ggx::is_smooth`]. What is
-//! not reflected is absorbed. Energy: at most F; light that is reflected more than once within the roughness is lost, up to
-//! 55 % at roughness one, and not made up for. Reciprocal. Reflects on both sides.
+//! not reflected is absorbed. Energy: at most F; light that is reflected more than once within the roughness is lost, at
+//! roughness one up to 70 % along the surface, and not made up for. Reciprocal. Reflects on both sides.
 //! Source: R. Cook and K. Torrance, A Reflectance Model for Computer Graphics, 1982; B. Walter and others, 2007, equation 20;
 //! `crates/vitrum-bxdf/src/fresnel.rs` and `ggx.rs` for F, D and G2.
 

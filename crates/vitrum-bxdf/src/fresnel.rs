@@ -2,7 +2,7 @@
 //!
 //! **Insulators.** With c = cos θi, e = η cos θt and k = η² − 1 (see [`Interface`](crate::Interface)),
 //!
-//! - r_s = (c − e)/(c + e) = −k/(c + e)², which subtracts nothing: at n = 1.0001 the usual form is wrong by 4e-4;
+//! - r_s = (c − e)/(c + e) = −k/(c + e)², which subtracts nothing: at n = 1.0001 the usual form is wrong by 4e-4 in f32;
 //! - r_p = −r_s (c cos θt − S)/(c cos θt + S) with S = sin θi sin θt = (1 − c²)/η.
 //!
 //! Intensities are the squares, their mean is what unpolarised light sees. Source: A. Fresnel, 1823; M. Born and E. Wolf,
@@ -40,9 +40,14 @@ impl<R: Real> Reflectance<R> {
 /// An insulator's reflectances: `c` = cos θi in [0, 1], `e` = η cos θt > 0, `k` = η² − 1.
 #[inline]
 pub(crate) fn dielectric<R: Real>(c: R, e: R, k: R) -> Reflectance<R> {
-    let r_s = k / (c + e).squared();
+    // Where c and e are far apart, their difference loses nothing and is the better known: r_s tends to one as the smaller
+    // of them tends to zero, whatever the larger one's rounding.
+    let (sum, four) = (c + e, R::from_f64(4.0));
+    let smaller = c.at_most(e);
+    let r_s =
+        if smaller * four < sum - smaller { R::one() - (smaller + smaller) / sum } else { k / sum.squared() };
     // Times η, both numerator and denominator: S = (1 − c²)/η, cos θt = e/η.
-    let sines = (R::one() - c * c).at_least(R::zero());
+    let sines = ((R::one() - c) * (R::one() + c)).at_least(R::zero());
     let cosines = c * e;
     let r_p = r_s * ((cosines - sines) / (cosines + sines));
     // Rounding may lift a grazing value above one by a unit in the last place.
@@ -106,7 +111,7 @@ impl<R: Real> ComplexIndex<R> {
 #[inline]
 fn conductor<R: Real>(c: R, n: R, k: R) -> Reflectance<R> {
     let half = R::from_f64(0.5);
-    let sin_squared = (R::one() - c * c).at_least(R::zero());
+    let sin_squared = ((R::one() - c) * (R::one() + c)).at_least(R::zero());
     // (u + iv)² = x + iy. The larger of u and v is a root of a sum, the other one follows from 2uv = y.
     let x = (n - k) * (n + k) - sin_squared;
     let y = R::from_f64(2.0) * n * k;

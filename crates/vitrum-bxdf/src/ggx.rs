@@ -86,10 +86,10 @@ impl<R: Real> Ggx<R> {
         self.alpha_x == R::zero()
     }
 
-    /// The roughness of the isotropic surface that comes nearest, √(αx αy).
+    /// The mean of both roughnesses.
     #[inline]
-    pub fn mean_alpha(&self) -> R {
-        if self.alpha_x == self.alpha_y { self.alpha_x } else { (self.alpha_x * self.alpha_y).sqrt() }
+    pub(crate) fn mean_alpha(&self) -> R {
+        (self.alpha_x + self.alpha_y) * R::from_f64(0.5)
     }
 
     /// The larger of both roughnesses.

@@ -10,9 +10,9 @@
 use libm::sqrt;
 
 /// Nodes over the cosine, the roughness and the ratio of indices.
-pub(crate) const COSINES: usize = 32;
+pub(crate) const COSINES: usize = 40;
 pub(crate) const ROUGHNESSES: usize = 20;
-pub(crate) const RATIOS: usize = 24;
+pub(crate) const RATIOS: usize = 32;
 
 /// Indices further apart than this have no compensation.
 pub(crate) const LARGEST_RATIO: f64 = 2.5;

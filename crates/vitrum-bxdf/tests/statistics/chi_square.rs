@@ -52,9 +52,9 @@ fn samplers_in_single_precision_follow_them_too() {
                 Bxdf::<f32>::Lambertian(Lambertian { reflectance: b.reflectance.as_vec3() })
             }
             Bxdf::GlossySpecular(b) => {
-                Bxdf::GlossySpecular(GlossySpecular { ks: b.ks.as_vec3(), exponent: b.exponent as f32 })
+                Bxdf::GlossySpecular(GlossySpecular::unnormalised(b.peak.as_vec3(), b.exponent as f32))
             }
-            Bxdf::PerfectSpecular(_) | Bxdf::PerfectTransmitter(_) => unreachable!("it has no density"),
+            _ => unreachable!("no subject here"),
         };
         let sample = |uniform: &mut Uniform, wo: DVec3| {
             // Numbers that f32 holds and that stay below one.

@@ -8,7 +8,7 @@ use vitrum_testkit::{Moments, SphereGrid, Uniform, integrate_sphere, sidak_level
 
 /// The share of light from everywhere, red channel.
 fn albedo(model: &Bxdf<f64>, wo: DVec3) -> f64 {
-    integrate_sphere(|wi| model.eval(wo, wi).x, SphereGrid::default())
+    integrate_sphere(|wi| model.eval(wo, wi, TransportMode::Radiance).x, SphereGrid::default())
 }
 
 #[test]
@@ -101,7 +101,7 @@ fn radiance_factors_of_entering_and_leaving_cancel() {
 fn the_largest_passive_highlight_returns_at_most_everything() {
     for exponent in EXPONENTS {
         let Bxdf::GlossySpecular(mut model) = glossy(exponent) else { unreachable!("it is a highlight") };
-        model.ks = DVec3::splat((exponent + 1.0) / TAU);
+        model.peak = DVec3::splat((exponent + 1.0) / TAU);
         for (place, wo) in outgoing() {
             let found = albedo(&Bxdf::GlossySpecular(model), wo);
             assert!(found <= 1.0, "exponent {exponent}, {place}: {found}");

@@ -12,8 +12,8 @@ fn light_may_go_either_way() {
         let mut nonzero = 0;
         for _ in 0..100_000 {
             let (wo, wi) = (direction(&mut uniform), direction(&mut uniform));
-            let there = subject.model.eval(wo, wi) / wi.z.abs();
-            let back = subject.model.eval(wi, wo) / wo.z.abs();
+            let there = subject.model.eval(wo, wi, TransportMode::Radiance) / wi.z.abs();
+            let back = subject.model.eval(wi, wo, TransportMode::Radiance) / wo.z.abs();
             // One product and one quotient, each rounded; far from the lobe both underflow.
             let tolerance = there * (4.0 * f64::EPSILON) + DVec3::splat(f64::MIN_POSITIVE);
             let close = (there - back).abs().cmple(tolerance).all();
@@ -33,9 +33,9 @@ fn sides_do_not_mix() {
             let wo = direction(&mut uniform);
             let wi = direction(&mut uniform);
             let across = if wo.z * wi.z > 0.0 { -wi } else { wi };
-            assert_eq!(subject.model.eval(wo, across), DVec3::ZERO);
+            assert_eq!(subject.model.eval(wo, across, TransportMode::Radiance), DVec3::ZERO);
             assert_eq!(subject.model.pdf(wo, across), 0.0);
-            assert_eq!(subject.model.eval(wo, DVec3::X), DVec3::ZERO);
+            assert_eq!(subject.model.eval(wo, DVec3::X, TransportMode::Radiance), DVec3::ZERO);
             let u = uniform.pair();
             if let Some(sample) = subject.model.sample(wo, 0.5, u, TransportMode::Radiance) {
                 assert!(sample.wi.z * wo.z > 0.0);

@@ -18,7 +18,7 @@ pub(crate) fn lambertian() -> Bxdf<f64> {
 }
 
 pub(crate) fn glossy(exponent: f64) -> Bxdf<f64> {
-    Bxdf::GlossySpecular(GlossySpecular { ks: COLOUR, exponent })
+    Bxdf::GlossySpecular(GlossySpecular::unnormalised(COLOUR, exponent))
 }
 
 pub(crate) fn glass(kr: DVec3, kt: DVec3, above: f64, below: f64) -> Bxdf<f64> {

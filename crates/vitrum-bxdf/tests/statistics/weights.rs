@@ -25,7 +25,7 @@ fn the_weight_is_eval_over_pdf() {
         samples(&subject.model, |wo, sample| {
             let pdf = subject.model.pdf(wo, sample.wi);
             assert_eq!(sample.pdf, Density::SolidAngle(pdf), "{}", subject.name);
-            let expected = subject.model.eval(wo, sample.wi) / pdf;
+            let expected = subject.model.eval(wo, sample.wi, TransportMode::Radiance) / pdf;
             let close = (sample.weight - expected).abs().cmple(expected * (4.0 * f64::EPSILON)).all();
             assert!(close, "{}: {} instead of {expected}", subject.name, sample.weight);
             assert_eq!(sample.eta, 1.0);

@@ -1,0 +1,46 @@
+//! Models, directions and numbers.
+
+use glam::DVec3;
+use vitrum_bxdf::{ComplexIndex, Conductor, Ggx, Interface, RoughDielectric};
+
+pub(crate) fn interface(above: f64, below: f64) -> Interface<f64> {
+    Interface::new(above, below).expect("both are indices")
+}
+
+pub(crate) fn ggx([alpha_x, alpha_y]: [f64; 2]) -> Ggx<f64> {
+    Ggx::new(alpha_x, alpha_y).expect("both are roughnesses")
+}
+
+/// Compensated glass below air, or whatever else.
+pub(crate) fn glass(above: f64, below: f64, alphas: [f64; 2]) -> RoughDielectric<f64> {
+    RoughDielectric::new(interface(above, below), ggx(alphas))
+}
+
+/// The same without compensation.
+pub(crate) fn single(above: f64, below: f64, alphas: [f64; 2]) -> RoughDielectric<f64> {
+    RoughDielectric::single_scattering(interface(above, below), ggx(alphas))
+}
+
+/// Gold, roughly: n + ik at 650, 550 and 450 nm.
+pub(crate) fn metal(alphas: [f64; 2]) -> Conductor<f64> {
+    let (n, k) = (DVec3::new(0.16, 0.42, 1.43), DVec3::new(3.5, 2.4, 1.85));
+    let index = ComplexIndex::new(n, k, 1.0).expect("it is a metal");
+    Conductor { index, roughness: ggx(alphas) }
+}
+
+/// A direction at so many degrees from the normal, above or below, away from the axes.
+pub(crate) fn at_angle(degrees: f64, above: bool) -> DVec3 {
+    let (sin, cos) = libm::sincos(degrees.to_radians());
+    let (sin_phi, cos_phi) = libm::sincos(0.7);
+    DVec3::new(sin * cos_phi, sin * sin_phi, if above { cos } else { -cos })
+}
+
+/// Point number `index` of a sequence that fills the unit cube of `D` dimensions evenly (M. Roberts, The Unreasonable
+/// Effectiveness of Quasirandom Sequences, 2018: multiples of powers of the root of x^(D+1) = x + 1).
+pub(crate) fn even<const D: usize>(index: u32) -> [f64; D] {
+    let mut root = 1.5_f64;
+    for _ in 0..60 {
+        root = (1.0 + root).powf(1.0 / (D as f64 + 1.0));
+    }
+    core::array::from_fn(|dimension| (0.5 + f64::from(index) * root.powi(-(dimension as i32 + 1))).fract())
+}
