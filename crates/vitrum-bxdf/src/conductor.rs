@@ -11,6 +11,7 @@
 //! Source: R. Cook and K. Torrance, A Reflectance Model for Computer Graphics, 1982; B. Walter and others, 2007, equation 20;
 //! `crates/vitrum-bxdf/src/fresnel.rs` and `ggx.rs` for F, D and G2.
 
+use crate::ggx::normal_along;
 use crate::valid::debug_assert_unit;
 use crate::{ComplexIndex, Density, Ggx, Lobe, Real, Sample, Split, Vector};
 
@@ -35,7 +36,8 @@ impl<R: Real> Conductor<R> {
     pub fn eval(&self, wo: R::Vec3, wi: R::Vec3) -> R::Vec3 {
         self.facet(wo, wi).map_or(R::Vec3::splat(R::zero()), |(density, m)| {
             let (wo, wi) = upward::<R>(wo, wi);
-            self.index.reflectance(wo.dot(m).at_most(R::one())) * (density * self.roughness.shadowing(wo, wi))
+            self.index.reflectance(wo.dot(m).at_least(R::zero()).at_most(R::one()))
+                * (density * self.roughness.shadowing(wo, wi))
         })
     }
 
@@ -54,7 +56,7 @@ impl<R: Real> Conductor<R> {
             return None;
         }
         let (wo, wi) = upward::<R>(wo, wi);
-        let m = (wo + wi).normalised();
+        let (m, _) = normal_along::<R>(wo + wi)?;
         Some((self.roughness.visible_normals_over_cosine(wo, m) / R::from_f64(4.0), m))
     }
 

@@ -159,3 +159,110 @@ impl<R: Real> Ggx<R> {
         R::Vec3::new(half.x() * self.alpha_x, half.y() * self.alpha_y, z).normalised()
     }
 }
+
+/// The microscopic normal along a half vector, on the upper side, and the square of the half vector's length. `None` for
+/// one so short that rounding has turned it: directions that run along the surface, opposite to each other.
+#[inline]
+pub(crate) fn normal_along<R: Real>(half: R::Vec3) -> Option<(R::Vec3, R)> {
+    let length_squared = half.dot(half);
+    if length_squared <= R::epsilon().squared().squared() {
+        return None;
+    }
+    let m = half / length_squared.sqrt();
+    Some((if m.z() < R::zero() { -m } else { m }, length_squared))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::f64::consts::PI;
+    use glam::DVec3;
+
+    const ALPHAS: [[f64; 2]; 4] = [[0.15, 0.15], [0.5, 0.5], [1.0, 1.0], [0.2, 0.7]];
+
+    /// The integral over the upper hemisphere, by the midpoint rule in the square of the cosine and the azimuth.
+    fn hemisphere(f: impl Fn(DVec3) -> f64) -> f64 {
+        let n = 1000;
+        let at = |i: u32| (f64::from(i) + 0.5) / f64::from(n);
+        let mut sum = 0.0;
+        for (i, j) in (0..n * n).map(|cell| (cell / n, cell % n)) {
+            // z = t² puts more points along the surface, where masking changes fast.
+            let (t, (sin, cos)) = (at(i), libm::sincos(2.0 * PI * at(j)));
+            let z = 1.0 - t * t;
+            let r = (1.0 - z * z).sqrt();
+            sum += 2.0 * t * f(DVec3::new(r * cos, r * sin, z));
+        }
+        sum * 2.0 * PI / (f64::from(n) * f64::from(n))
+    }
+
+    fn ggx([alpha_x, alpha_y]: [f64; 2]) -> Ggx<f64> {
+        Ggx::new(alpha_x, alpha_y).expect("both are roughnesses")
+    }
+
+    /// ∫ D(m) m_z = 1: the microscopic surface covers the surface once.
+    #[test]
+    fn projected_normals_cover_the_surface_once() {
+        for alphas in ALPHAS {
+            let area = hemisphere(|m| ggx(alphas).normals(m) * m.z);
+            assert!((area - 1.0).abs() < 1e-3, "{alphas:?}: {area}");
+        }
+    }
+
+    /// ∫ G1(w) max(0, w·m) D(m) = w_z: what is seen from any side is as large as the surface (Heitz 2014, equation 14).
+    #[test]
+    fn what_is_seen_is_as_large_as_the_surface() {
+        for alphas in ALPHAS {
+            for (degrees, azimuth) in [(0.0_f64, 0.0), (40.0, 0.3), (75.0, 1.2), (85.0, 2.0)] {
+                let ((sin, cos), (sin_phi, cos_phi)) =
+                    (libm::sincos(degrees.to_radians()), libm::sincos(azimuth));
+                let w = DVec3::new(sin * cos_phi, sin * sin_phi, cos);
+                let ggx = ggx(alphas);
+                let seen = ggx.masking(w) * hemisphere(|m| ggx.normals(m) * w.dot(m).max(0.0));
+                assert!((seen / cos - 1.0).abs() < 2e-3, "{alphas:?}, {degrees} degrees: {seen}");
+                let density = hemisphere(|m| ggx.visible_normals(w, m));
+                assert!((density - 1.0).abs() < 2e-3, "{alphas:?}, {degrees} degrees: {density}");
+            }
+        }
+    }
+
+    #[test]
+    fn masking_is_a_share_and_correlated_masking_hides_less_than_separable() {
+        for alphas in ALPHAS {
+            let ggx = ggx(alphas);
+            for (a, b) in (0..400).map(|i| (i % 20, i / 20)) {
+                let w = |i: i32, phi: f64| {
+                    let z = f64::from(i) / 19.0;
+                    let r = (1.0 - z * z).sqrt();
+                    DVec3::new(r * libm::cos(phi), r * libm::sin(phi), z)
+                };
+                let (wo, wi) = (w(a, 0.4), w(b, 2.5));
+                let (one, other, both) = (ggx.masking(wo), ggx.masking(wi), ggx.masking_shadowing(wo, wi));
+                assert!((0.0..=1.0).contains(&one) && both <= one.min(other) + 1e-15);
+                assert!(both + 1e-15 >= one * other);
+                if one > 0.0 {
+                    assert!((ggx.shadowing(wo, wi) - both / one).abs() < 1e-14);
+                }
+            }
+        }
+    }
+
+    /// GGX along the normal is seen whole; a direction along the surface sees nothing.
+    #[test]
+    fn masking_has_its_limits() {
+        assert_eq!(ggx([0.3, 0.3]).masking(DVec3::Z), 1.0);
+        assert_eq!(ggx([0.3, 0.3]).masking(DVec3::X), 0.0);
+        // G1 = 2/(1 + √(1 + α² tan²)) at 45 degrees (Walter and others 2007, equation 34).
+        let w = DVec3::new(0.5_f64.sqrt(), 0.0, 0.5_f64.sqrt());
+        assert!((ggx([0.3, 0.9]).masking(w) - 2.0 / (1.0 + (1.0_f64 + 0.09).sqrt())).abs() < 1e-15);
+    }
+
+    #[test]
+    fn roughness_is_between_zero_and_one() {
+        for (x, y) in [(-0.1, 0.1), (0.1, 1.1), (f64::NAN, 0.1), (0.1, f64::INFINITY)] {
+            assert!(Ggx::new(x, y).is_err());
+        }
+        assert!(ggx([0.0, 0.5e-4]).is_smooth() && !ggx([0.0, 0.5]).is_smooth());
+        assert_eq!(ggx([0.0, 0.5]), ggx([1e-4, 0.5]));
+        assert_eq!(Ggx::<f64>::smooth(), ggx([0.0, 0.0]));
+    }
+}

@@ -46,6 +46,9 @@ extern crate std;
 #[cfg(not(any(feature = "std", feature = "libm")))]
 compile_error!("vitrum-bxdf needs the feature `std` or, on targets without the standard library, `libm`");
 
+/// The vectors of this crate's interface.
+pub use glam;
+
 mod bxdf;
 mod compensation;
 mod conductor;

@@ -36,6 +36,7 @@
 //! by no more than rounding, the model is [`FresnelDielectric`], with discrete densities.
 
 use crate::compensation::Compensation;
+use crate::ggx::normal_along;
 use crate::valid::debug_assert_unit;
 use crate::{Density, FresnelDielectric, Ggx, Interface, Lobe, Real, Sample, Split, TransportMode, Vector};
 
@@ -114,12 +115,7 @@ impl<R: Real> RoughDielectric<R> {
         let (wo, wi) = if above { (wo, wi) } else { (wo.mirrored(), wi.mirrored()) };
         let reflects = wi.z() > zero;
         let half = if reflects { wo + wi } else { wo + wi * crossing.eta };
-        let length_squared = half.dot(half);
-        if length_squared <= R::epsilon().squared().squared() {
-            return zero;
-        }
-        let half = half / length_squared.sqrt();
-        let m = if half.z() < zero { -half } else { half };
+        let Some((m, length_squared)) = normal_along::<R>(half) else { return zero };
         let (cos_o, cos_i) = (wo.dot(m), wi.dot(m));
         // Both directions must see the facet from the sides that the lobe says.
         if cos_o <= zero || (cos_i > zero) != reflects {

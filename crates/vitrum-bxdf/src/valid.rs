@@ -15,3 +15,22 @@ pub(crate) fn debug_assert_unit<R: Real>(w: R::Vec3) {
         "a direction must have unit length, found {w:?}"
     );
 }
+
+#[cfg(all(test, debug_assertions))]
+mod tests {
+    use crate::{FresnelDielectric, Interface, Lambertian, TransportMode};
+    use glam::{DVec3, Vec3};
+
+    #[test]
+    #[should_panic(expected = "a direction must have unit length")]
+    fn a_direction_that_was_not_normalised_is_refused() {
+        let interface = Interface::new(1.0, 1.5).expect("both are indices");
+        FresnelDielectric { interface }.split(DVec3::new(0.0, 0.0, 2.0), TransportMode::Radiance);
+    }
+
+    #[test]
+    #[should_panic(expected = "a direction must have unit length")]
+    fn a_direction_that_is_not_a_number_is_refused() {
+        Lambertian::<f32> { reflectance: Vec3::ONE }.eval(Vec3::Z, Vec3::NAN);
+    }
+}
