@@ -7,12 +7,13 @@ mod pixel;
 mod query;
 mod refraction;
 mod sampler;
+mod scattering;
 
 use criterion::{criterion_group, criterion_main};
 
 criterion_group! {
     name = hot_loop;
     config = measure::short();
-    targets = refraction::bench, intersect::bench, query::bench, sampler::bench, pixel::bench
+    targets = refraction::bench, scattering::bench, intersect::bench, query::bench, sampler::bench, pixel::bench
 }
 criterion_main!(hot_loop);

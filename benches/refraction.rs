@@ -1,4 +1,4 @@
-//! Scattering: refraction in both precisions, the models, and what it costs not to know the model beforehand.
+//! Refraction in both precisions, and the two children of a ray tree's node.
 //!
 //! Elements are directions. They are uniform over the hemisphere where a side is named, else over the sphere. From inside
 //! the glass (n = 1.5) three in four are beyond the critical angle, whose cosine is 0.745: a branch that can't be predicted,
@@ -8,17 +8,13 @@ use crate::directions::{INPUTS, direction};
 use crate::measure::measure;
 use criterion::Criterion;
 use std::hint::black_box;
-use vitrum::bxdf::{
-    Bxdf, GlossySpecular, Interface, Lambertian, PerfectSpecular, PerfectTransmitter, Real, TransportMode,
-    Vector,
-};
+use vitrum::bxdf::{FresnelDielectric, Interface, PerfectTransmitter, Real, TransportMode, Vector};
 use vitrum::math::DVec3;
 use vitrum_testkit::Uniform;
 
 pub(crate) fn bench(criterion: &mut Criterion) {
     refract(criterion);
     split(criterion);
-    density(criterion);
 }
 
 /// Directions of the whole sphere.
@@ -58,56 +54,19 @@ fn refract(criterion: &mut Criterion) {
     sides::<f32>(criterion, "f32");
 }
 
-/// The two children of a ray tree's node: from the model itself, from the enum when all are glass, and when each is
-/// another model than the one before.
+/// The two children of a ray tree's node: with constant coefficients, and with Fresnel's.
 fn split(criterion: &mut Criterion) {
     let directions = everywhere();
-    let model = glass::<f64>();
-    measure(criterion, "split/glass", INPUTS, || {
+    let constant = glass::<f64>();
+    measure(criterion, "split/constant coefficients", INPUTS, || {
         for wo in &directions {
-            black_box(black_box(&model).split(*wo, TransportMode::Radiance));
+            black_box(black_box(&constant).split(*wo, TransportMode::Radiance));
         }
     });
-    let all_glass = vec![Bxdf::PerfectTransmitter(model); INPUTS];
-    let mut uniform = Uniform::new(2);
-    let mixed: Vec<Bxdf<f64>> = (0..INPUTS).map(|_| any_model(uniform.number())).collect();
-    for (name, models) in [("split/enum, all glass", &all_glass), ("split/enum, four models", &mixed)] {
-        measure(criterion, name, INPUTS, || {
-            for (model, wo) in models.iter().zip(&directions) {
-                black_box(model.split(*wo, TransportMode::Radiance));
-            }
-        });
-    }
-}
-
-/// One of the four models, by a number in [0, 1).
-fn any_model(chosen: f64) -> Bxdf<f64> {
-    match (4.0 * chosen) as u32 {
-        0 => Bxdf::Lambertian(Lambertian { reflectance: DVec3::splat(0.5) }),
-        1 => Bxdf::GlossySpecular(GlossySpecular::unnormalised(DVec3::splat(0.2), 2000.0)),
-        2 => Bxdf::PerfectSpecular(PerfectSpecular { kr: DVec3::splat(0.5) }),
-        _ => Bxdf::PerfectTransmitter(glass()),
-    }
-}
-
-/// What a light asks for, and a random choice of direction.
-fn density(criterion: &mut Criterion) {
-    let (outgoing, incoming) = (on_side(true), {
-        let mut uniform = Uniform::new(3);
-        (0..INPUTS).map(|_| direction(&mut uniform)).collect::<Vec<_>>()
+    let fresnel = FresnelDielectric { interface: constant.interface };
+    measure(criterion, "split/Fresnel", INPUTS, || {
+        for wo in &directions {
+            black_box(black_box(&fresnel).split(*wo, TransportMode::Radiance));
+        }
     });
-    let mut uniform = Uniform::new(4);
-    let points: Vec<[f64; 2]> = (0..INPUTS).map(|_| uniform.pair()).collect();
-    for (name, model) in [("diffuse", any_model(0.0)), ("highlight", any_model(0.25))] {
-        measure(criterion, &format!("eval/{name}"), INPUTS, || {
-            for (wo, wi) in outgoing.iter().zip(&incoming) {
-                black_box(black_box(&model).eval(*wo, *wi, TransportMode::Radiance));
-            }
-        });
-        measure(criterion, &format!("sample/{name}"), INPUTS, || {
-            for (wo, u) in outgoing.iter().zip(&points) {
-                black_box(black_box(&model).sample(*wo, 0.5, *u, TransportMode::Radiance));
-            }
-        });
-    }
 }

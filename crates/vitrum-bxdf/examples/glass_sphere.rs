@@ -64,7 +64,7 @@ fn sky(d: DVec3) -> DVec3 {
     }
 }
 
-/// Numbers in [0, 1): a multiplicative congruential generator (D. Knuth's MMIX constants).
+/// Numbers in [0, 1): a linear congruential generator (D. Knuth's MMIX constants).
 struct Random(u64);
 
 impl Random {

@@ -45,19 +45,18 @@ impl<R: Real> ThinDielectric<R> {
         let e = e_squared.sqrt();
         let r = crossing.reflectance(c, e).unpolarised();
         let t = one - r;
-        let clear = self.transmittance == R::Vec3::splat(one);
-        let longer = if clear { one } else { crossing.eta / e };
-        let pass = |tau: R| if clear { one } else { tau.powf(longer) };
-        // 1 − R²a², without a difference where R and a are nearly one.
-        let rest = |a: R| t * (one + r) + r * r * ((one - a) * (one + a));
-        let reflected = self.transmittance.map(|tau| {
-            let a = pass(tau);
-            if rest(a) > zero { (r + r * t * t * a * a / rest(a)).at_most(one) } else { one }
+        if self.transmittance == R::Vec3::splat(one) {
+            let reflected = (r + r) / (one + r);
+            return (R::Vec3::splat(reflected), R::Vec3::splat(one - reflected));
+        }
+        let longer = crossing.eta / e;
+        let pass = self.transmittance.map(|tau| tau.powf(longer));
+        // T²a/(1 − R²a²); the denominator without a difference where R and a are nearly one.
+        let transmitted = pass.map(|a| {
+            let rest = t * (one + r) + r * r * ((one - a) * (one + a));
+            if rest > zero { t * t * a / rest } else { zero }
         });
-        let transmitted = self.transmittance.map(|tau| {
-            let a = pass(tau);
-            if rest(a) > zero { t * t * a / rest(a) } else { zero }
-        });
+        let reflected = transmitted.zip(pass, |through, a| (r + r * a * through).at_most(one));
         (reflected, transmitted)
     }
 
