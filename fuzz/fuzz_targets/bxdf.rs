@@ -12,7 +12,8 @@ type Input = (u8, [f64; 4], [f64; 3], [f64; 3], [u32; 3]);
 fuzz_target!(|input: Input| {
     let (kind, [a, b, x, y], wo, wi, u) = input;
     let Some(model) = model(kind, [a, b], [x, y]) else { return };
-    let [wo, wi] = [wo, wi].map(|w| DVec3::from_array(w).try_normalize());
+    // Twice, because the length of a tiny vector has few digits.
+    let [wo, wi] = [wo, wi].map(|w| DVec3::from_array(w).try_normalize().map(DVec3::normalize));
     let (Some(wo), Some(wi)) = (wo, wi) else { return };
     let [uc, u, v] = u.map(|u| f64::from(u) / 4_294_967_296.0);
     for mode in [TransportMode::Radiance, TransportMode::Importance] {
@@ -23,7 +24,9 @@ fuzz_target!(|input: Input| {
         let split = model.split(wo, mode);
         for sample in [split.reflected, split.transmitted, model.sample(wo, uc, [u, v], mode)].into_iter().flatten() {
             assert!(sample.weight.is_finite() && sample.weight.min_element() >= 0.0, "{sample:?}");
-            assert!((sample.wi.length() - 1.0).abs() < 1e-9, "{sample:?}");
+            // Snell's law carries the rounding of wo's length on, divided by eta².
+            let slack = 32.0 * f64::EPSILON / sample.eta.min(1.0).powi(2);
+            assert!((sample.wi.length() - 1.0).abs() <= slack, "{sample:?}");
         }
     }
 });

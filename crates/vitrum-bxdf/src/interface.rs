@@ -90,6 +90,9 @@ impl<R: Real> Interface<R> {
             && below.is_finite()
             && (1e-6..=1e6).contains(&ratio)
         {
+            // Only the ratio counts: by a power of two, which is exact, both come near one, so that no square overflows.
+            let (_, exponent) = libm::frexp(above);
+            let [above, below] = [above, below].map(|n| libm::scalbn(n, -exponent));
             Ok(Self { downward: Crossing::new(above, below), upward: Crossing::new(below, above) })
         } else {
             Err(IndexError { above, below })
@@ -321,6 +324,15 @@ mod tests {
     fn impossible_indices_are_refused() {
         for (a, b) in [(0.0, 1.0), (1.0, -1.5), (f64::NAN, 1.0), (1.0, f64::INFINITY), (1.0, 1e9)] {
             assert!(Interface::new(a, b).is_err());
+        }
+    }
+
+    #[test]
+    fn only_the_ratio_of_the_indices_counts() {
+        let near = Interface::new(1.0, 1.5).expect("valid");
+        for exponent in [-1070, -500, 500, 1022] {
+            let scale = libm::scalbn(1.0, exponent);
+            assert_eq!(Interface::new(scale, 1.5 * scale).expect("valid"), near, "{scale}");
         }
     }
 
