@@ -1,5 +1,5 @@
-//! Instructions of the scattering models, counted by valgrind: a thousand calls each, in double precision, over directions
-//! of the whole sphere. The counts repeat to the unit, so each has a limit, and above it this bench fails.
+//! Instructions of the scattering models, counted by valgrind: 4096 calls each, in double precision, over directions of the
+//! whole sphere. The counts repeat to the unit, so each has a limit, and above it this bench fails.
 //!
 //! ```text
 //! cargo install gungraun-runner --version 0.20.0      # and valgrind, a package of every system
@@ -13,7 +13,7 @@
 
 mod directions;
 
-use directions::direction;
+use directions::{INPUTS, direction};
 use gungraun::{
     Callgrind, EventKind, LibraryBenchmarkConfig, library_benchmark, library_benchmark_group, main,
 };
@@ -24,9 +24,6 @@ use vitrum::bxdf::{
 };
 use vitrum::math::DVec3;
 use vitrum_testkit::Uniform;
-
-/// Calls of each bench.
-const CALLS: usize = 1000;
 
 const MODE: TransportMode = TransportMode::Radiance;
 
@@ -42,7 +39,7 @@ struct Input<M> {
 /// The inputs of a model: not counted.
 fn inputs<M: Copy>(model: M) -> &'static [Input<M>] {
     let mut uniform = Uniform::new(1);
-    let inputs = (0..CALLS).map(|_| {
+    let inputs = (0..INPUTS).map(|_| {
         let [wo, wi] = [0; 2].map(|_| direction(&mut uniform));
         Input { model, wo, wi, uc: uniform.number(), u: uniform.pair() }
     });
@@ -135,29 +132,29 @@ macro_rules! at_most {
 }
 
 at_most! {
-    lambertian_eval: 19_000, lambertian: Lambertian<f64>, |i| i.model.eval(i.wo, i.wi);
-    lambertian_sample: 173_000, lambertian: Lambertian<f64>, |i| i.model.sample(i.wo, i.u);
-    highlight_eval: 125_000, highlight: GlossySpecular<f64>, |i| i.model.eval(i.wo, i.wi);
-    highlight_sample: 1_057_000, highlight: GlossySpecular<f64>, |i| i.model.sample(i.wo, i.u);
-    mirror_sample: 26_000, mirror: PerfectSpecular<f64>, |i| i.model.sample(i.wo);
-    perfect_transmitter_split: 63_000, perfect_transmitter: PerfectTransmitter<f64>, |i| i.model.split(i.wo, MODE);
-    perfect_transmitter_sample: 97_000, perfect_transmitter: PerfectTransmitter<f64>, |i| i.model.sample(i.wo, i.uc, MODE);
-    fresnel_dielectric_split: 83_000, fresnel_dielectric: FresnelDielectric<f64>, |i| i.model.split(i.wo, MODE);
-    fresnel_dielectric_sample: 124_000, fresnel_dielectric: FresnelDielectric<f64>, |i| i.model.sample(i.wo, i.uc, MODE);
-    clear_sheet_split: 147_000, clear_sheet: ThinDielectric<f64>, |i| i.model.split(i.wo);
-    clear_sheet_sample: 171_000, clear_sheet: ThinDielectric<f64>, |i| i.model.sample(i.wo, i.uc);
-    tinted_sheet_split: 984_000, tinted_sheet: ThinDielectric<f64>, |i| i.model.split(i.wo);
-    single_scattering_eval: 199_000, single_scattering: RoughDielectric<f64>, |i| i.model.eval(i.wo, i.wi, MODE);
-    single_scattering_pdf: 148_000, single_scattering: RoughDielectric<f64>, |i| i.model.pdf(i.wo, i.wi);
-    single_scattering_sample: 422_000, single_scattering: RoughDielectric<f64>, |i| i.model.sample(i.wo, i.uc, i.u, MODE);
-    rough_dielectric_new: 164_000, rough_dielectric: RoughDielectric<f64>, |i| RoughDielectric::new(*i.model.interface(), *i.model.roughness());
-    rough_dielectric_eval: 299_000, rough_dielectric: RoughDielectric<f64>, |i| i.model.eval(i.wo, i.wi, MODE);
-    rough_dielectric_sample: 571_000, rough_dielectric: RoughDielectric<f64>, |i| i.model.sample(i.wo, i.uc, i.u, MODE);
-    smooth_metal_sample: 237_000, smooth_metal: Conductor<f64>, |i| i.model.sample(i.wo, i.u);
-    rough_metal_eval: 169_000, rough_metal: Conductor<f64>, |i| i.model.eval(i.wo, i.wi);
-    rough_metal_sample: 478_000, rough_metal: Conductor<f64>, |i| i.model.sample(i.wo, i.u);
-    all_models_eval: 100_000, all_models: Bxdf<f64>, |i| i.model.eval(i.wo, i.wi, MODE);
-    all_models_sample: 277_000, all_models: Bxdf<f64>, |i| i.model.sample(i.wo, i.uc, i.u, MODE);
+    lambertian_eval: 75_000, lambertian: Lambertian<f64>, |i| i.model.eval(i.wo, i.wi);
+    lambertian_sample: 700_000, lambertian: Lambertian<f64>, |i| i.model.sample(i.wo, i.u);
+    highlight_eval: 495_000, highlight: GlossySpecular<f64>, |i| i.model.eval(i.wo, i.wi);
+    highlight_sample: 4_296_000, highlight: GlossySpecular<f64>, |i| i.model.sample(i.wo, i.u);
+    mirror_sample: 104_000, mirror: PerfectSpecular<f64>, |i| i.model.sample(i.wo);
+    perfect_transmitter_split: 256_000, perfect_transmitter: PerfectTransmitter<f64>, |i| i.model.split(i.wo, MODE);
+    perfect_transmitter_sample: 392_000, perfect_transmitter: PerfectTransmitter<f64>, |i| i.model.sample(i.wo, i.uc, MODE);
+    fresnel_dielectric_split: 336_000, fresnel_dielectric: FresnelDielectric<f64>, |i| i.model.split(i.wo, MODE);
+    fresnel_dielectric_sample: 502_000, fresnel_dielectric: FresnelDielectric<f64>, |i| i.model.sample(i.wo, i.uc, MODE);
+    clear_sheet_split: 596_000, clear_sheet: ThinDielectric<f64>, |i| i.model.split(i.wo);
+    clear_sheet_sample: 691_000, clear_sheet: ThinDielectric<f64>, |i| i.model.sample(i.wo, i.uc);
+    tinted_sheet_split: 3_988_000, tinted_sheet: ThinDielectric<f64>, |i| i.model.split(i.wo);
+    single_scattering_eval: 789_000, single_scattering: RoughDielectric<f64>, |i| i.model.eval(i.wo, i.wi, MODE);
+    single_scattering_pdf: 589_000, single_scattering: RoughDielectric<f64>, |i| i.model.pdf(i.wo, i.wi);
+    single_scattering_sample: 1_708_000, single_scattering: RoughDielectric<f64>, |i| i.model.sample(i.wo, i.uc, i.u, MODE);
+    rough_dielectric_new: 662_000, rough_dielectric: RoughDielectric<f64>, |i| RoughDielectric::new(*i.model.interface(), *i.model.roughness());
+    rough_dielectric_eval: 1_181_000, rough_dielectric: RoughDielectric<f64>, |i| i.model.eval(i.wo, i.wi, MODE);
+    rough_dielectric_sample: 2_311_000, rough_dielectric: RoughDielectric<f64>, |i| i.model.sample(i.wo, i.uc, i.u, MODE);
+    smooth_metal_sample: 960_000, smooth_metal: Conductor<f64>, |i| i.model.sample(i.wo, i.u);
+    rough_metal_eval: 661_000, rough_metal: Conductor<f64>, |i| i.model.eval(i.wo, i.wi);
+    rough_metal_sample: 1_937_000, rough_metal: Conductor<f64>, |i| i.model.sample(i.wo, i.u);
+    all_models_eval: 402_000, all_models: Bxdf<f64>, |i| i.model.eval(i.wo, i.wi, MODE);
+    all_models_sample: 1_125_000, all_models: Bxdf<f64>, |i| i.model.sample(i.wo, i.uc, i.u, MODE);
 }
 
 main!(

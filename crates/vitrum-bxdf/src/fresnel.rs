@@ -2,8 +2,8 @@
 //!
 //! **Insulators.** With c = cos θi, e = η cos θt and k = η² − 1 (see [`Interface`](crate::Interface)),
 //!
-//! - r_s = (c − e)/(c + e) = −k/(c + e)², which subtracts nothing: at n = 1.0001 the usual form is wrong by 4e-4 in f32;
-//! - r_p = −r_s (c cos θt − S)/(c cos θt + S) with S = sin θi sin θt = (1 − c²)/η.
+//! - `r_s = (c − e)/(c + e) = −k/(c + e)²`, which subtracts nothing: at n = 1.0001 the usual form is wrong by 4e-4 in f32;
+//! - `r_p = −r_s (c e − sin² θi)/(c e + sin² θi)`, which is the textbook's tan(θi − θt)/tan(θi + θt).
 //!
 //! Intensities are the squares, their mean is what unpolarised light sees. Source: A. Fresnel, 1823; M. Born and E. Wolf,
 //! Principles of Optics, 7th ed. 1999, section 1.5.2, equations (20a) and (21a).
@@ -46,7 +46,7 @@ pub(crate) fn dielectric<R: Real>(c: R, e: R, k: R) -> Reflectance<R> {
     let smaller = c.at_most(e);
     let r_s =
         if smaller * four < sum - smaller { R::one() - (smaller + smaller) / sum } else { k / sum.squared() };
-    // Times η, both numerator and denominator: S = (1 − c²)/η, cos θt = e/η.
+    // sin² θi; below one, 1 − c is exact.
     let sines = ((R::one() - c) * (R::one() + c)).at_least(R::zero());
     let cosines = c * e;
     let r_p = r_s * ((cosines - sines) / (cosines + sines));
@@ -142,7 +142,7 @@ mod tests {
     const PAIRS: [(f64, f64); 6] =
         [(1.0, 1.5), (1.0, 1.33), (1.33, 1.5), (1.0, 2.42), (1.0, 1.0003), (1.0, 100.0)];
 
-    /// ((n_i − n_t)/(n_i + n_t))².
+    /// The square of (`n_i` − `n_t`)/(`n_i` + `n_t`).
     #[test]
     fn normal_incidence_has_its_closed_form() {
         for (a, b) in PAIRS {

@@ -6,16 +6,17 @@
 //!
 //! All directions here are on the upper side, z ≥ 0; a model looks at a surface from below in a mirrored frame.
 //!
-//! - Normals: D(m) = 1/(π αx αy q²) with q = (m_x/αx)² + (m_y/αy)² + m_z² (T. Trowbridge and K. Reitz, Average Irregularity
-//!   Representation of a Rough Surface for Ray Reflection, 1975; B. Walter and others, Microfacet Models for Refraction
-//!   through Rough Surfaces, 2007, equation 33).
-//! - Masking: Λ(w) = (s(w)/w_z − 1)/2 with s(w) = √(w_z² + (αx w_x)² + (αy w_y)²). One direction is seen by G1 = 1/(1 + Λ),
-//!   two by the height-correlated G2 = 1/(1 + Λ(wo) + Λ(wi)) (E. Heitz, Understanding the Masking-Shadowing Function in
-//!   Microfacet-Based BRDFs, 2014, equation 99). As in pbrt-v4, the same form serves transmission.
-//! - Visible normals: G1(wo) max(0, wo·m) D(m)/wo_z, sampled by spherical caps (J. Dupuy and A. Benyoub, Sampling Visible
+//! - Normals: `D(m) = 1/(π αx αy q²)` with `q = (m_x/αx)² + (m_y/αy)² + m_z²` (T. Trowbridge and K. Reitz, Average
+//!   Irregularity Representation of a Rough Surface for Ray Reflection, 1975; B. Walter and others, Microfacet Models for
+//!   Refraction through Rough Surfaces, 2007, equation 33).
+//! - Masking: `Λ(w) = (s(w)/w_z − 1)/2` with `s(w) = √(w_z² + (αx w_x)² + (αy w_y)²)`. One direction is seen by
+//!   `G1 = 1/(1 + Λ)`, two by the height-correlated `G2 = 1/(1 + Λ(wo) + Λ(wi))` (E. Heitz, Understanding the
+//!   Masking-Shadowing Function in Microfacet-Based BRDFs, 2014, equation 99). As in pbrt-v4, the same form serves
+//!   transmission.
+//! - Visible normals: `G1(wo) max(0, wo·m) D(m)/wo_z`, sampled by spherical caps (J. Dupuy and A. Benyoub, Sampling Visible
 //!   GGX Normals with Spherical Caps, 2023).
 //!
-//! Written with s(w), nothing is divided by a cosine: along the surface every value is finite.
+//! Written with `s(w)`, nothing is divided by a cosine: along the surface every value is finite.
 
 use crate::{Real, Vector};
 use core::fmt;
@@ -105,7 +106,7 @@ impl<R: Real> Ggx<R> {
         if m.z() > R::zero() { R::one() / (R::pi() * self.alpha_x * self.alpha_y * q * q) } else { R::zero() }
     }
 
-    /// s(w): the area that the microscopic surface shows towards `w`, front minus back faces counted once, is (w_z + s)/2.
+    /// `s(w)`: the microscopic surface that faces `w`, hidden parts included, projects to the area `(w_z + s)/2`.
     #[inline]
     fn stretched_length(&self, w: R::Vec3) -> R {
         (w.z().squared() + (self.alpha_x * w.x()).squared() + (self.alpha_y * w.y()).squared()).sqrt()
@@ -199,7 +200,7 @@ mod tests {
         Ggx::new(alpha_x, alpha_y).expect("both are roughnesses")
     }
 
-    /// ∫ D(m) m_z = 1: the microscopic surface covers the surface once.
+    /// `∫ D(m) m_z = 1`: the microscopic surface covers the surface once.
     #[test]
     fn projected_normals_cover_the_surface_once() {
         for alphas in ALPHAS {
@@ -208,7 +209,7 @@ mod tests {
         }
     }
 
-    /// ∫ G1(w) max(0, w·m) D(m) = w_z: what is seen from any side is as large as the surface (Heitz 2014, equation 14).
+    /// `∫ G1(w) max(0, w·m) D(m) = w_z`: what is seen from any side is as large as the surface (Heitz 2014, equation 14).
     #[test]
     fn what_is_seen_is_as_large_as_the_surface() {
         for alphas in ALPHAS {

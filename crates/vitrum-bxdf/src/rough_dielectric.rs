@@ -7,9 +7,9 @@
 //!
 //! With m the microscopic normal, F its Fresnel reflectance and η = n(wi)/n(wo):
 //!
-//! - reflection, m along wo + wi: f = F D(m) G2/(4 |cos θo cos θi|);
-//! - transmission, m along ±(wo + η wi): f = (1 − F) D(m) G2 |wo·m| |wi·m| η²/(|cos θo cos θi| |wo + η wi|²), and 1/η² of
-//!   it for radiance.
+//! - reflection, m along wo + wi: `f = F D(m) G2/(4 |cos θo cos θi|)`;
+//! - transmission, m along ±(wo + η wi): `f = (1 − F) D(m) G2 |wo·m| |wi·m| η²/(|cos θo cos θi| |wo + η wi|²)`, and 1/η²
+//!   of it for radiance.
 //!
 //! (B. Walter and others, Microfacet Models for Refraction through Rough Surfaces, 2007, equations 20 and 21; D and G2 as in
 //! `ggx.rs`.) Normals are sampled as they are seen from `wo`, then one of both children by F: the weight is G2/G1(wo).
@@ -28,7 +28,7 @@
 //!
 //! [`single_scattering`](RoughDielectric::single_scattering) leaves it out.
 //!
-//! **Reciprocity.** Without compensation f(wo, wi)/n_o² = f(wi, wo)/n_i². The factor 1/E(wo) is not symmetric; for
+//! **Reciprocity.** Without compensation `f(wo, wi)/n_o² = f(wi, wo)/n_i²`. The factor 1/E(wo) is not symmetric; for
 //! importance it is 1/E(wi), so that the importance a light path carries is the exact adjoint of the radiance of a camera
 //! path, and both directions of transport agree.
 //!

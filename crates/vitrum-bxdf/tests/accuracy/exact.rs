@@ -64,7 +64,7 @@ pub(crate) struct Truth {
 }
 
 /// Snell's law as sin² θt = (n_i/n_t)² (1 − c²), and Fresnel's amplitudes in the form of every textbook:
-/// (n_i c − n_t cos θt)/(n_i c + n_t cos θt), and with the indices exchanged.
+/// `(n_i c − n_t cos θt)/(n_i c + n_t cos θt)`, and with the indices exchanged.
 pub(crate) fn truth(n_i: f64, n_t: f64, c: f64) -> Truth {
     let [n_i, n_t, c, one] = [n_i, n_t, c, 1.0].map(Exact::new);
     let ratio = n_i.clone() / n_t.clone();

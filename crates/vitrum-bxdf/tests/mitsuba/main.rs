@@ -7,6 +7,7 @@
 //!   ratio of both, densities (which know only G1(wo)) as they are;
 //! - single scattering only: compared with `single_scattering`;
 //! - `alpha_u` is our `alpha_x`.
+#![expect(clippy::print_stdout, reason = "the largest difference of each file, for people who ask to see it")]
 
 use glam::{DVec3, Vec3};
 use vitrum_bxdf::{
