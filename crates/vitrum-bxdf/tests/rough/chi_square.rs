@@ -8,6 +8,7 @@
 //! out on the upper hemisphere for reflection and on the lower one for transmission, its rim around the poles, where what
 //! falls on the wrong side of the surface is. The Jacobians of these steps are
 //! written down here anew (Walter and others 2007, equations 14 and 17; Dupuy and Benyoub 2023).
+#![expect(clippy::print_stdout, reason = "the p-values, for people who ask to see them")]
 
 use crate::stage::{at_angle, ggx, glass, interface, metal};
 use glam::{DVec3, Vec3};

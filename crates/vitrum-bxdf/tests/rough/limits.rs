@@ -23,8 +23,7 @@ fn mean(
     value: impl Fn(Option<Sample<f64>>) -> f64,
 ) -> f64 {
     let side = f64::signum(wo.z);
-    let of_normal = |index: u32| {
-        let u = even(index);
+    let of_normal = |u: [f64; 2]| {
         let m = model.roughness().sample(DVec3::new(wo.x, wo.y, wo.z.abs()), u);
         let cos = wo.dot(DVec3::new(m.x, m.y, side * m.z));
         let reflected = model.interface().reflectance(cos * side).unpolarised();
@@ -32,7 +31,7 @@ fn mean(
             [0.0, 1.0 - f64::EPSILON].map(|uc| value(model.sample(wo, uc, u, MODE)));
         reflected * reflection + (1.0 - reflected) * transmission
     };
-    (0..normals).map(of_normal).sum::<f64>() / f64::from(normals)
+    even(normals).map(of_normal).sum::<f64>() / f64::from(normals)
 }
 
 /// The light that arrives from `wo` through rough glass.
@@ -85,7 +84,7 @@ fn the_switch_to_smooth_is_continuous() {
         }
         let [rough, smooth] = alphas.map(|alpha| metal([alpha; 2]));
         assert!(!rough.is_specular() && smooth.is_specular());
-        let sum: f64 = (0..1 << 16).map(|index| arrives(rough.sample(wo, even(index)))).sum();
+        let sum: f64 = even(1 << 16).map(|u| arrives(rough.sample(wo, u))).sum();
         let (rough, smooth) = (sum / 65_536.0, seen_by_splitting(&Bxdf::Conductor(smooth), wo));
         assert!((rough - smooth).abs() < 1e-5, "{wo}: {rough} and {smooth}");
     }

@@ -45,7 +45,7 @@ fn assert_equal(a: f64, b: f64, wo: DVec3, wi: DVec3) {
     assert!((a - b).abs() <= 1e-5 * a.max(b), "{wo} and {wi}: {a} and {b}");
 }
 
-/// f(wo, wi)/n_o² = f(wi, wo)/n_i² for radiance, and for importance the other way round.
+/// `f(wo, wi)/n_o² = f(wi, wo)/n_i²` for radiance, and for importance the other way round.
 #[test]
 fn single_scattering_is_reciprocal_with_the_squared_index() {
     for alphas in ALPHAS {

@@ -35,12 +35,17 @@ pub(crate) fn at_angle(degrees: f64, above: bool) -> DVec3 {
     DVec3::new(sin * cos_phi, sin * sin_phi, if above { cos } else { -cos })
 }
 
-/// Point number `index` of a sequence that fills the unit cube of `D` dimensions evenly (M. Roberts, The Unreasonable
+/// The first points of a sequence that fills the unit cube of `D` dimensions evenly (M. Roberts, The Unreasonable
 /// Effectiveness of Quasirandom Sequences, 2018: multiples of powers of the root of x^(D+1) = x + 1).
-pub(crate) fn even<const D: usize>(index: u32) -> [f64; D] {
+pub(crate) fn even<const D: usize>(points: u32) -> impl Iterator<Item = [f64; D]> {
     let mut root = 1.5_f64;
     for _ in 0..60 {
         root = (1.0 + root).powf(1.0 / (D as f64 + 1.0));
     }
-    core::array::from_fn(|dimension| (0.5 + f64::from(index) * root.powi(-(dimension as i32 + 1))).fract())
+    let mut power = 1.0;
+    let steps: [f64; D] = core::array::from_fn(|_| {
+        power /= root;
+        power
+    });
+    (0..points).map(move |index| steps.map(|step| (0.5 + f64::from(index) * step).fract()))
 }
