@@ -4,7 +4,7 @@ use crate::departure::Query;
 use crate::interaction::SurfaceInteraction;
 use crate::object::Object;
 use crate::shape::{Crossing, Sphere};
-use crate::tree::{BoxTree, UnitFrame};
+use crate::wide::{Lanes, Portable, UnitFrame, Visitor, WideTree};
 use std::ops::ControlFlow;
 use vitrum_math::Bounds;
 
@@ -87,7 +87,7 @@ pub struct Aggregate {
 #[derive(Clone, Debug)]
 struct ObjectTree {
     frame: UnitFrame,
-    boxes: BoxTree,
+    boxes: WideTree,
     /// The object of each box.
     objects: Vec<u32>,
 }
@@ -96,11 +96,12 @@ impl ObjectTree {
     #[inline(never)]
     fn closest(&self, objects: &[Object], query: &Query, nearest: &mut Nearest, counters: &mut Counters) {
         let Some(ray) = self.frame.enter(&query.ray, nearest.limit()) else { return };
-        self.boxes.traverse(&ray, ray.box_limit(nearest.limit()), |item, _| {
-            let id = self.objects[item as usize];
+        let limit = ray.box_limit(nearest.limit());
+        let visit = |id: u32| {
             objects[id as usize].closest(query, id, nearest, counters);
             ControlFlow::Continue(ray.box_limit(nearest.limit()))
-        });
+        };
+        self.boxes.walk::<Portable>(&ray, limit, &mut InBlocks { tree: self, visit });
     }
 
     #[inline(never)]
@@ -108,12 +109,28 @@ impl ObjectTree {
         let Some(ray) = self.frame.enter(&query.ray, limit) else { return false };
         let box_limit = ray.box_limit(limit);
         let mut found = false;
-        self.boxes.traverse(&ray, box_limit, |item, _| {
-            let id = self.objects[item as usize];
+        let visit = |id: u32| {
             found = objects[id as usize].any(query, id, limit, counters);
             if found { ControlFlow::Break(()) } else { ControlFlow::Continue(box_limit) }
-        });
+        };
+        self.boxes.walk::<Portable>(&ray, box_limit, &mut InBlocks { tree: self, visit });
         found
+    }
+}
+
+/// Asks the objects of a block one by one.
+struct InBlocks<'t, F> {
+    tree: &'t ObjectTree,
+    visit: F,
+}
+
+impl<F: FnMut(u32) -> ControlFlow<(), f32>> Visitor for InBlocks<'_, F> {
+    #[inline(always)]
+    fn visit<L: Lanes>(&mut self, block: usize, mut limit: f32) -> ControlFlow<(), f32> {
+        for &item in self.tree.boxes.blocks()[block].iter().take_while(|item| **item != WideTree::NONE) {
+            limit = (self.visit)(self.tree.objects[item as usize])?;
+        }
+        ControlFlow::Continue(limit)
     }
 }
 
@@ -136,7 +153,7 @@ impl Aggregate {
         }
         let tree = (!is_flat).then(|| {
             let frame = UnitFrame::around(&bounds);
-            let boxes = BoxTree::build(
+            let boxes = WideTree::build(
                 bounded.iter().map(|(_, b)| (frame.inward(b.min).as_vec3(), frame.inward(b.max).as_vec3())),
             );
             ObjectTree { frame, boxes, objects: bounded.iter().map(|(id, _)| *id).collect() }

@@ -24,7 +24,7 @@ mod interaction;
 pub mod mesh;
 mod object;
 pub mod shape;
-mod tree;
+mod wide;
 
 pub use aggregate::{Aggregate, Counters, Hit};
 pub use departure::{Departure, Query};

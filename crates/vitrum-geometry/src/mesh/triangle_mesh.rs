@@ -1,10 +1,12 @@
 //! A triangle mesh in the form that rays are traced against.
 
 use super::MeshData;
-use super::triangle::{Sheared, meet};
+use super::triangle::{Sheared, TriangleBlock};
 use crate::aggregate::{Counters, Hit, Nearest};
 use crate::departure::{Departure, Query};
-use crate::tree::{BoxTree, FrameRay, UnitFrame};
+#[cfg(target_arch = "x86_64")]
+use crate::wide::Avx2;
+use crate::wide::{BLOCK, FrameRay, Isa, Lanes, Portable, UnitFrame, Visitor, WideTree};
 use std::ops::ControlFlow;
 use vitrum_math::{Bounds, DVec3, Ray, Vec3, gamma};
 
@@ -21,7 +23,10 @@ pub struct TriangleMesh {
     normal_triangles: Vec<[u32; 3]>,
     /// Number of the material of each triangle; empty when all have the same.
     materials: Vec<u32>,
-    tree: BoxTree,
+    tree: WideTree,
+    /// The triangles of the tree's blocks.
+    blocks: Vec<TriangleBlock>,
+    isa: Isa,
 }
 
 /// Largest coordinate of a mesh, in its own units.
@@ -74,6 +79,33 @@ pub(crate) struct MeshPoint {
     pub(crate) error: f64,
 }
 
+/// Looks for triangles that the ray may meet.
+struct Candidates<'m, F> {
+    blocks: &'m [TriangleBlock],
+    sheared: Sheared<'m>,
+    visit: F,
+}
+
+impl<F> Visitor for Candidates<'_, F>
+where
+    F: FnMut(&Sheared<'_>, u32, &[DVec3; 3], f32) -> ControlFlow<(), f32>,
+{
+    #[inline(always)]
+    fn visit<L: Lanes>(&mut self, block: usize, mut limit: f32) -> ControlFlow<(), f32> {
+        let block = &self.blocks[block];
+        let mut candidates = self.sheared.may_meet::<L>(block, limit);
+        while candidates != 0 {
+            let lane = candidates.trailing_zeros() as usize & (BLOCK - 1);
+            candidates &= candidates - 1;
+            let face = block.faces[lane];
+            if face != WideTree::NONE {
+                limit = (self.visit)(&self.sheared, face, &block.corners(lane), limit)?;
+            }
+        }
+        ControlFlow::Continue(limit)
+    }
+}
+
 impl TriangleMesh {
     /// Prepares a mesh for tracing. Its normals, where it has any, are used for shading.
     ///
@@ -117,16 +149,32 @@ impl TriangleMesh {
         } else {
             vec![]
         };
-        let tree = BoxTree::build(triangles.iter().map(|t| {
-            let [a, b, c] = t.map(|i| vertices[i as usize]);
+        let corners = |t: &[u32; 3]| t.map(|i| vertices[i as usize]);
+        let mut tree = WideTree::build(triangles.iter().map(|t| {
+            let [a, b, c] = corners(t);
             (a.min(b).min(c), a.max(b).max(c))
         }));
+        let blocks = tree.take_blocks().into_iter();
+        let blocks = blocks
+            .map(|faces| TriangleBlock::new(faces, |face| corners(&triangles[face as usize])))
+            .collect();
         let materials = if data.materials.len() == data.triangles.len() {
             kept.iter().map(|&i| data.materials[i]).collect()
         } else {
             vec![]
         };
-        Ok(Self { frame, bounds, vertices, triangles, normals, normal_triangles, materials, tree })
+        Ok(Self {
+            frame,
+            bounds,
+            vertices,
+            triangles,
+            normals,
+            normal_triangles,
+            materials,
+            tree,
+            blocks,
+            isa: Isa::best(),
+        })
     }
 
     /// Looks at the vertices alone: what comes before any arithmetic with them.
@@ -174,6 +222,7 @@ impl TriangleMesh {
             + size_of_val(&*self.normal_triangles)
             + size_of_val(&*self.materials)
             + self.tree.memory()
+            + size_of_val(&*self.blocks)
     }
 
     #[inline]
@@ -192,10 +241,9 @@ impl TriangleMesh {
         counters: &mut Counters,
     ) {
         let Some(ray) = self.frame.enter(ray, nearest.limit()) else { return };
-        let sheared = Sheared::new(ray.origin, ray.direction);
         let limit = ray.box_limit(nearest.limit());
-        self.tree.traverse(&ray, limit, |face, limit| {
-            if let Some(hit) = self.candidate(&ray, &sheared, query, object, face, counters)
+        self.candidates(&ray, limit, |sheared, face, corners, limit| {
+            if let Some(hit) = self.settle(&ray, sheared, query, object, face, corners, counters)
                 && nearest.offer(hit)
             {
                 return ControlFlow::Continue(ray.box_limit(nearest.limit()));
@@ -215,10 +263,9 @@ impl TriangleMesh {
         counters: &mut Counters,
     ) -> bool {
         let Some(ray) = self.frame.enter(ray, limit) else { return false };
-        let sheared = Sheared::new(ray.origin, ray.direction);
         let mut found = false;
-        self.tree.traverse(&ray, ray.box_limit(limit), |face, box_limit| {
-            match self.candidate(&ray, &sheared, query, object, face, counters) {
+        self.candidates(&ray, ray.box_limit(limit), |sheared, face, corners, box_limit| {
+            match self.settle(&ray, sheared, query, object, face, corners, counters) {
                 Some(hit) if hit.t < limit => {
                     found = true;
                     ControlFlow::Break(())
@@ -229,39 +276,78 @@ impl TriangleMesh {
         found
     }
 
-    /// The same as [`closest`](Self::closest) by trying every triangle: the oracle that the tree is tested against.
+    /// The same as [`closest`](Self::closest) by trying every triangle in double precision: the oracle that the tree is
+    /// tested against.
     #[cfg(test)]
     pub(crate) fn closest_of_all(&self, ray: &Ray, query: &Query, nearest: &mut Nearest) {
         let Some(ray) = self.frame.enter(ray, f64::INFINITY) else { return };
-        let sheared = Sheared::new(ray.origin, ray.direction);
+        let sheared = Sheared::new(&ray.exact, ray.origin, ray.direction);
         for face in 0..self.triangles.len() as u32 {
-            if let Some(hit) = self.candidate(&ray, &sheared, query, 0, face, &mut Counters::default()) {
+            let corners = self.corners(face).map(|c| c.as_dvec3());
+            let hit = self.settle(&ray, &sheared, query, 0, face, &corners, &mut Counters::default());
+            if let Some(hit) = hit {
                 nearest.offer(hit);
             }
         }
     }
 
-    /// Tests one triangle, in double precision if it may be met, and asks whether it counts.
-    #[inline]
-    fn candidate(
+    /// Calls `visit` for the triangles that the ray may meet before the limit, with the instructions of the processor.
+    #[inline(always)]
+    fn candidates(
         &self,
         ray: &FrameRay,
-        sheared: &Sheared,
+        limit: f32,
+        visit: impl FnMut(&Sheared<'_>, u32, &[DVec3; 3], f32) -> ControlFlow<(), f32>,
+    ) {
+        match self.isa {
+            Isa::Portable => self.candidates_with::<Portable>(ray, limit, visit),
+            #[cfg(target_arch = "x86_64")]
+            #[allow(unsafe_code)]
+            // SAFETY: `Isa::Avx2` stands only where the processor was asked for these instructions.
+            Isa::Avx2 => unsafe { self.candidates_avx2(ray, limit, visit) },
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,fma")]
+    fn candidates_avx2(
+        &self,
+        ray: &FrameRay,
+        limit: f32,
+        visit: impl FnMut(&Sheared<'_>, u32, &[DVec3; 3], f32) -> ControlFlow<(), f32>,
+    ) {
+        self.candidates_with::<Avx2>(ray, limit, visit);
+    }
+
+    #[inline(always)]
+    fn candidates_with<L: Lanes>(
+        &self,
+        ray: &FrameRay,
+        limit: f32,
+        mut visit: impl FnMut(&Sheared<'_>, u32, &[DVec3; 3], f32) -> ControlFlow<(), f32>,
+    ) {
+        let sheared = Sheared::new(&ray.exact, ray.origin, ray.direction);
+        self.tree.walk::<L>(ray, limit, &mut Candidates { blocks: &self.blocks, sheared, visit: &mut visit });
+    }
+
+    /// Tests one triangle in double precision and asks whether it counts.
+    #[inline]
+    #[expect(clippy::too_many_arguments, reason = "a ray with its history, and a triangle")]
+    fn settle(
+        &self,
+        ray: &FrameRay,
+        sheared: &Sheared<'_>,
         query: &Query,
         object: u32,
         face: u32,
+        corners: &[DVec3; 3],
         counters: &mut Counters,
     ) -> Option<Hit> {
-        let corners = self.corners(face);
-        if !sheared.may_meet(&corners) {
-            return None;
-        }
         let departed = query.departed_from(object);
         if departed.is_some_and(|d| d.face == face) {
             return None;
         }
-        let corners = corners.map(|c| c.as_dvec3());
-        let met = meet(&ray.exact, &corners)?;
+        let met = sheared.meet(corners)?;
         let mut t = met.t / ray.t_scale;
         if let Some(departed) = departed {
             // A neighbour within the rounding error of the origin. Whether it seems to lie before or behind says nothing.
@@ -269,7 +355,7 @@ impl TriangleMesh {
             let along = ray.exact.direction.dot(normal);
             let distance = (met.t * along).abs() / normal.dot(normal).sqrt();
             if distance <= departed.error {
-                if !self.goes_through_neighbour(departed, ray.exact.origin, &corners, along < 0.0) {
+                if !self.goes_through_neighbour(departed, ray.exact.origin, corners, along < 0.0) {
                     counters.neighbours_ignored += 1;
                     return None;
                 }

@@ -1,0 +1,170 @@
+//! From obvhs's binary tree to the wide one.
+//!
+//! Which subtrees become the children of one wide node is chosen by dynamic programming over the surface area heuristic, as
+//! for compressed wide trees (H. Ylitie, T. Karras and S. Laine, Efficient Incoherent Ray Traversal on GPUs Through
+//! Compressed Wide BVHs, 2017, section 3.1): C(n, i) is the least cost of the subtree n laid out as a forest of at most i
+//! wide subtrees.
+
+use super::{BLOCK, Child, Node, PAD, WIDTH, WideTree};
+use obvhs::bvh2::Bvh2;
+use vitrum_math::Vec3;
+
+/// Cost of a wide node, and of a block of a leaf, relative to each other.
+const NODE_COST: f32 = 1.0;
+const BLOCK_COST: f32 = 0.7;
+
+/// A leaf holds at most so many blocks.
+const LEAF_BLOCKS: usize = 2;
+
+/// Costs of the forests of one to seven subtrees.
+type Costs = [f32; WIDTH - 1];
+
+struct Collapse<'b> {
+    binary: &'b Bvh2,
+    costs: Vec<Costs>,
+    /// Items below each binary node.
+    sizes: Vec<u32>,
+}
+
+pub(super) fn collapse(binary: &Bvh2) -> WideTree {
+    let mut collapse = Collapse {
+        binary,
+        costs: vec![[0.0; WIDTH - 1]; binary.nodes.len()],
+        sizes: vec![0; binary.nodes.len()],
+    };
+    collapse.count_costs();
+    collapse.lay_out()
+}
+
+impl Collapse<'_> {
+    fn children(&self, node: usize) -> Option<[usize; 2]> {
+        let node = &self.binary.nodes[node];
+        (node.prim_count == 0).then(|| [node.first_index as usize, node.first_index as usize + 1])
+    }
+
+    fn half_area(&self, node: usize) -> f32 {
+        self.binary.nodes[node].aabb().half_area()
+    }
+
+    /// From the leaves up.
+    fn count_costs(&mut self) {
+        // Children stand after their parents here, whatever their order in memory.
+        let mut order = Vec::with_capacity(self.binary.nodes.len());
+        let mut open = vec![0];
+        while let Some(node) = open.pop() {
+            order.push(node);
+            if let Some(children) = self.children(node) {
+                open.extend(children);
+            }
+        }
+        for &node in order.iter().rev() {
+            match self.children(node) {
+                None => {
+                    let count = self.binary.nodes[node].prim_count;
+                    self.sizes[node] = count;
+                    self.costs[node] = [self.leaf_cost(node, count); WIDTH - 1];
+                }
+                Some([left, right]) => {
+                    self.sizes[node] = self.sizes[left] + self.sizes[right];
+                    let (left, right) = (self.costs[left], self.costs[right]);
+                    let inner = self.half_area(node) * NODE_COST + split(&left, &right, WIDTH).0;
+                    let mut costs = [inner.min(self.leaf_cost(node, self.sizes[node])); WIDTH - 1];
+                    for roots in 2..WIDTH {
+                        costs[roots - 1] = costs[roots - 2].min(split(&left, &right, roots).0);
+                    }
+                    self.costs[node] = costs;
+                }
+            }
+        }
+    }
+
+    fn leaf_cost(&self, node: usize, items: u32) -> f32 {
+        let blocks = (items as usize).div_ceil(BLOCK);
+        if blocks > LEAF_BLOCKS { f32::INFINITY } else { self.half_area(node) * BLOCK_COST * blocks as f32 }
+    }
+
+    /// From the root down.
+    fn lay_out(&self) -> WideTree {
+        let mut tree = WideTree { nodes: vec![Node::EMPTY], blocks: Vec::new(), depth: 0 };
+        // Binary subtrees that wait to become wide nodes: where, and how deep.
+        let mut open = vec![(0usize, 0usize, 1usize)];
+        while let Some((binary, wide, depth)) = open.pop() {
+            tree.depth = tree.depth.max(depth);
+            let mut roots = Vec::with_capacity(WIDTH);
+            match self.children(binary) {
+                // A root that is a leaf already.
+                None => roots.push(binary),
+                Some(_) if binary == 0 && self.is_leaf(binary) => roots.push(binary),
+                Some([left, right]) => {
+                    let (_, to_left) = split(&self.costs[left], &self.costs[right], WIDTH);
+                    self.forest(left, to_left, &mut roots);
+                    self.forest(right, WIDTH - to_left, &mut roots);
+                }
+            }
+            for (slot, &root) in roots.iter().enumerate() {
+                let child = if self.is_leaf(root) {
+                    let first = tree.blocks.len();
+                    self.fill_blocks(root, &mut tree.blocks);
+                    Child::leaf(first, tree.blocks.len() - first)
+                } else {
+                    tree.nodes.push(Node::EMPTY);
+                    open.push((root, tree.nodes.len() - 1, depth + 1));
+                    Child::node(tree.nodes.len() - 1)
+                };
+                let aabb = self.binary.nodes[root].aabb();
+                let (min, max) = (Vec3::from(aabb.min), Vec3::from(aabb.max));
+                tree.nodes[wide].set(slot, min - Vec3::splat(PAD), max + Vec3::splat(PAD), child);
+            }
+        }
+        tree
+    }
+
+    /// Whether the subtree costs least as one leaf.
+    fn is_leaf(&self, node: usize) -> bool {
+        self.children(node).is_none() || self.leaf_cost(node, self.sizes[node]) <= self.costs[node][0]
+    }
+
+    /// The roots of the cheapest forest of at most `roots` subtrees.
+    fn forest(&self, node: usize, roots: usize, into: &mut Vec<usize>) {
+        let costs = &self.costs[node];
+        // As few as cost no more.
+        let roots = (1..=roots).find(|&fewer| costs[fewer - 1] <= costs[roots - 1]).unwrap_or(roots);
+        match self.children(node) {
+            Some([left, right]) if roots > 1 => {
+                let (_, to_left) = split(&self.costs[left], &self.costs[right], roots);
+                self.forest(left, to_left, into);
+                self.forest(right, roots - to_left, into);
+            }
+            _ => into.push(node),
+        }
+    }
+
+    fn fill_blocks(&self, root: usize, blocks: &mut Vec<[u32; BLOCK]>) {
+        let mut filled = BLOCK;
+        let mut open = vec![root];
+        while let Some(node) = open.pop() {
+            if let Some([left, right]) = self.children(node) {
+                open.extend([right, left]);
+                continue;
+            }
+            let node = &self.binary.nodes[node];
+            let items = node.first_index as usize..(node.first_index + node.prim_count) as usize;
+            for &item in &self.binary.primitive_indices[items] {
+                if filled == BLOCK {
+                    blocks.push([WideTree::NONE; BLOCK]);
+                    filled = 0;
+                }
+                blocks.last_mut().expect("just made")[filled] = item;
+                filled += 1;
+            }
+        }
+    }
+}
+
+/// The cheapest way to give `roots` ≥ 2 subtrees to two children, and how many the left one gets.
+fn split(left: &Costs, right: &Costs, roots: usize) -> (f32, usize) {
+    (1..roots)
+        .map(|to_left| (left[to_left - 1] + right[roots - to_left - 1], to_left))
+        .min_by(|a, b| a.0.total_cmp(&b.0))
+        .expect("at least one way")
+}
