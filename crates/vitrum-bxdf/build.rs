@@ -68,8 +68,9 @@ fn strip(roughness: usize) -> Vec<f64> {
         let n = sqrt(1.0 + q * q);
         for side in [Side::Rarer, Side::Denser] {
             let eta = if side == Side::Rarer { n } else { 1.0 / n };
+            let cosines = grid::Cosines::new(alpha, q / n);
             for cosine in 0..COSINES {
-                let mu = inverse(at(cosine, COSINES), 0.0, 1.0, |mu| grid::of_cosine(mu, alpha, q / n, side));
+                let mu = inverse(at(cosine, COSINES), 0.0, 1.0, |mu| cosines.coordinate(mu, side));
                 // Along the surface itself the integrand is a limit too.
                 albedos.push(View::new(mu.max(1e-6), alpha, eta).albedo(&rule));
             }

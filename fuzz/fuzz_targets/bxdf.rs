@@ -1,49 +1,79 @@
-//! Any parameters that the constructors take and any directions of unit length: every answer is a number, none is negative.
+//! Every model with any legal parameters, asked about any directions, in both precisions: every answer is a number, and none
+//! is negative.
+//!
+//! The bytes are mapped onto what is legal, with its ends, so that few of them are wasted.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
 use vitrum_bxdf::glam::DVec3;
 use vitrum_bxdf::{
-    Bxdf, ComplexIndex, Conductor, FresnelDielectric, Ggx, Interface, RoughDielectric, ThinDielectric, TransportMode,
+    Bxdf, ComplexIndex, Conductor, FresnelDielectric, Ggx, GlossySpecular, Interface, Lambertian, PerfectSpecular,
+    PerfectTransmitter, Real, RoughDielectric, ThinDielectric, TransportMode, Vector,
 };
 
-type Input = (u8, [f64; 4], [f64; 3], [f64; 3], [u32; 3]);
+/// Which model, its parameters, two directions, three random numbers.
+type Input = (u8, [u16; 4], [[i16; 3]; 2], [u8; 2], [u32; 3]);
 
 fuzz_target!(|input: Input| {
-    let (kind, [a, b, x, y], wo, wi, u) = input;
-    let Some(model) = model(kind, [a, b], [x, y]) else { return };
-    // Twice, because the length of a tiny vector has few digits.
-    let [wo, wi] = [wo, wi].map(|w| DVec3::from_array(w).try_normalize().map(DVec3::normalize));
-    let (Some(wo), Some(wi)) = (wo, wi) else { return };
-    let [uc, u, v] = u.map(|u| f64::from(u) / 4_294_967_296.0);
-    for mode in [TransportMode::Radiance, TransportMode::Importance] {
-        let value = model.eval(wo, wi, mode);
-        assert!(value.is_finite() && value.min_element() >= 0.0, "{value}");
-        let pdf = model.pdf(wo, wi);
-        assert!(pdf.is_finite() && pdf >= 0.0, "{pdf}");
-        let split = model.split(wo, mode);
-        for sample in [split.reflected, split.transmitted, model.sample(wo, uc, [u, v], mode)].into_iter().flatten() {
-            assert!(sample.weight.is_finite() && sample.weight.min_element() >= 0.0, "{sample:?}");
-            // Snell's law carries the rounding of wo's length on, divided by eta².
-            let slack = 32.0 * f64::EPSILON / sample.eta.min(1.0).powi(2);
-            assert!((sample.wi.length() - 1.0).abs() <= slack, "{sample:?}");
-        }
-    }
+    ask::<f64>(&input);
+    ask::<f32>(&input);
 });
 
-fn model(kind: u8, [a, b]: [f64; 2], [x, y]: [f64; 2]) -> Option<Bxdf<f64>> {
-    if kind % 5 == 4 {
-        let index = ComplexIndex::new(DVec3::splat(a), DVec3::splat(b), 1.0).ok()?;
-        return Some(Bxdf::Conductor(Conductor { index, roughness: Ggx::new(x, y).ok()? }));
-    }
-    let interface = Interface::new(a, b).ok()?;
-    Some(match kind % 5 {
-        0 => Bxdf::FresnelDielectric(FresnelDielectric { interface }),
-        1 if (0.0..=1.0).contains(&x) => {
-            Bxdf::ThinDielectric(ThinDielectric { interface, transmittance: DVec3::new(x, 1.0 - x, 1.0) })
+fn ask<R: Real>((kind, parameters, directions, tiny, numbers): &Input) {
+    let model: Bxdf<R> = model(*kind, *parameters);
+    let [Some(wo), Some(wi)] = [0, 1].map(|i| direction::<R>(directions[i], tiny[i])) else { return };
+    let [uc, u, v] = numbers.map(|n| R::from_f64(f64::from(n >> 8) / 16_777_216.0));
+    let is_share = |x: R| x >= R::zero() && x.is_finite();
+    let is_colour = |c: R::Vec3| is_share(c.x()) && is_share(c.y()) && is_share(c.z());
+    for mode in [TransportMode::Radiance, TransportMode::Importance] {
+        assert!(is_colour(model.eval(wo, wi, mode)) && is_share(model.pdf(wo, wi)));
+        let split = model.split(wo, mode);
+        let chosen = model.sample(wo, uc, [u, v], mode);
+        for sample in [split.reflected, split.transmitted, chosen].into_iter().flatten() {
+            assert!(is_colour(sample.weight), "{sample:?}");
+            assert!((sample.wi.dot(sample.wi).to_f64() - 1.0).abs() < 1e-3, "{sample:?}");
         }
-        2 => Bxdf::RoughDielectric(RoughDielectric::new(interface, Ggx::new(x, y).ok()?)),
-        3 => Bxdf::RoughDielectric(RoughDielectric::single_scattering(interface, Ggx::new(x, y).ok()?)),
-        _ => return None,
-    })
+    }
+}
+
+/// A direction, with one component made tiny where `tiny` says so.
+fn direction<R: Real>(w: [i16; 3], tiny: u8) -> Option<R::Vec3> {
+    let mut w = w.map(f64::from);
+    if tiny < 64 {
+        w[usize::from(tiny % 3)] = [0.0, -0.0, 1e-30, -1e-30, 1e-12, -1e-7][usize::from(tiny / 3 % 6)];
+    }
+    let w = DVec3::from_array(w).try_normalize()?;
+    let w = R::Vec3::new(R::from_f64(w.x), R::from_f64(w.y), R::from_f64(w.z));
+    Some(w / w.dot(w).sqrt())
+}
+
+fn model<R: Real>(kind: u8, [a, b, x, y]: [u16; 4]) -> Bxdf<R> {
+    let share = |n: u16| f64::from(n) / 65_535.0;
+    let number = R::from_f64;
+    let colour = |a: f64, b: f64, c: f64| R::Vec3::new(number(a), number(b), number(c));
+    // Ratios from 1e-6 to 1e6, half of them near one.
+    let index = |n: u16| if n % 2 == 0 { 10_f64.powf(6.0 * share(n) - 3.0) } else { 1.0 + 1e-3 * share(n).powi(4) };
+    let interface = Interface::new(number(index(a)), number(index(b))).expect("a legal pair");
+    let alpha = |n: u16| share(n).powi(3);
+    let roughness = Ggx::new(number(alpha(x)), number(alpha(y))).expect("legal roughness");
+    match kind % 9 {
+        0 => Lambertian { reflectance: colour(share(a), share(b), share(x)) }.into(),
+        1 => GlossySpecular::unnormalised(colour(share(a), share(b), 1.0), number(10_f64.powf(6.0 * share(x)))).into(),
+        2 => PerfectSpecular { kr: colour(share(a), share(b), share(x)) }.into(),
+        3 => {
+            let kr = share(x);
+            let kt = (1.0 - kr) * share(y);
+            PerfectTransmitter { kr: colour(kr, 0.0, kr), kt: colour(kt, kt, 0.0), interface }.into()
+        }
+        4 => FresnelDielectric { interface }.into(),
+        5 => ThinDielectric { interface, transmittance: colour(share(x), share(y), 1.0) }.into(),
+        6 => RoughDielectric::new(interface, roughness).into(),
+        7 => RoughDielectric::single_scattering(interface, roughness).into(),
+        _ => {
+            let n = 10_f64.powf(6.0 * share(a) - 3.0).clamp(1e-3, 1e3);
+            let k = (1e3 * share(b).powi(4)).min(1e3);
+            let index = ComplexIndex::new(colour(n, n, 1.0), colour(k, 0.0, k), R::one()).expect("a legal metal");
+            Bxdf::from(Conductor { index, roughness })
+        }
+    }
 }

@@ -29,6 +29,26 @@ pub enum Bxdf<R: Real> {
 
 const _: () = assert!(size_of::<Bxdf<f64>>() <= 128 && size_of::<Bxdf<f32>>() <= 80);
 
+macro_rules! from_models {
+    ($($model:ident),+) => {
+        $(impl<R: Real> From<$model<R>> for Bxdf<R> {
+            fn from(model: $model<R>) -> Self {
+                Self::$model(model)
+            }
+        })+
+    };
+}
+from_models!(
+    Lambertian,
+    GlossySpecular,
+    PerfectSpecular,
+    PerfectTransmitter,
+    FresnelDielectric,
+    ThinDielectric,
+    RoughDielectric,
+    Conductor
+);
+
 impl<R: Real> Bxdf<R> {
     /// True when all densities are discrete: `eval` and `pdf` are zero, light sources can't be sampled through the model,
     /// and [`split`](Self::split) gives all there is.

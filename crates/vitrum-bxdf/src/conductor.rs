@@ -9,13 +9,15 @@
 //! not reflected is absorbed. Energy: at most F; light that is reflected more than once within the roughness is lost, at
 //! roughness one up to 70 % along the surface, and not made up for. Reciprocal. Reflects on both sides.
 //! Source: R. Cook and K. Torrance, A Reflectance Model for Computer Graphics, 1982; B. Walter and others, 2007, equation 20;
-//! `crates/vitrum-bxdf/src/fresnel.rs` and `ggx.rs` for F, D and G2.
+//! F is in [`fresnel`](crate::fresnel), D and G2 in [`ggx`](crate::ggx).
 
 use crate::ggx::normal_along;
 use crate::valid::debug_assert_unit;
 use crate::{ComplexIndex, Density, Ggx, Lobe, Real, Sample, Split, Vector};
 
 /// Reflects as a metal does.
+///
+/// [Manual](self).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conductor<R: Real> {
     /// The metal's index against what is outside.

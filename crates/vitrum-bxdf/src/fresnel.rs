@@ -9,7 +9,8 @@
 //! Principles of Optics, 7th ed. 1999, section 1.5.2, equations (20a) and (21a).
 //!
 //! **Metals** have the index n + ik. With u + iv = √((n + ik)² − sin² θi) the intensities are those of Born and Wolf,
-//! section 14.2; neither u nor v is taken from a difference, so that k = 0 gives the insulator and k ≫ n loses nothing.
+//! section 14.2; the smaller of u and v follows from the larger, so that k ≫ n loses nothing. Errors are those of a
+//! difference: 1e-14 in f64 and 1e-5 in f32 at worst, absolute, near k = 0; for metals 1e-6 in f32.
 
 use crate::{Real, Vector};
 use core::fmt;
@@ -98,6 +99,16 @@ impl<R: Real> ComplexIndex<R> {
             }
         }
         Ok(Self { n, k })
+    }
+
+    /// The real part against the medium outside, per channel.
+    pub fn n(&self) -> R::Vec3 {
+        self.n
+    }
+
+    /// The imaginary part against the medium outside, per channel.
+    pub fn k(&self) -> R::Vec3 {
+        self.k
     }
 
     /// The reflected share of unpolarised light that arrives with `cos` = cos θi in [0, 1], per channel.
@@ -228,7 +239,7 @@ mod tests {
         }
     }
 
-    /// ((n − 1)² + k²)/((n + 1)² + k²); with aluminium and gold at 633 nm it is 91 and 97 % in every handbook.
+    /// ((n − 1)² + k²)/((n + 1)² + k²); aluminium reflects 91 % of 633 nm, gold 94 %.
     #[test]
     fn metals_have_their_closed_form_at_normal_incidence() {
         for (n, k, percent) in

@@ -6,13 +6,15 @@
 //!
 //! Nothing is absorbed: reflected and transmitted shares add up to one, exactly. Absorption belongs to the medium between
 //! two surfaces. Reciprocal with the factor n² that every refracting surface has. Indices that match reflect nothing and
-//! change no bit of the direction; those that nearly match reflect (n − 1)²/4 and a little more.
+//! change no bit of the direction (but light that runs exactly along the surface is reflected, as at every surface); those that nearly match reflect (n − 1)²/4 and a little more.
 //! Source: A. Fresnel, 1823; M. Born and E. Wolf, Principles of Optics, 7th ed. 1999, section 1.5.2.
 
 use crate::valid::debug_assert_unit;
 use crate::{Density, Interface, Lobe, Real, Sample, Split, TransportMode, Vector};
 
 /// Reflects and refracts as the Fresnel equations say.
+///
+/// [Manual](self).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FresnelDielectric<R: Real> {
     /// The indices on both sides.
@@ -24,8 +26,7 @@ impl<R: Real> FresnelDielectric<R> {
     #[inline]
     pub fn split(&self, wo: R::Vec3, mode: TransportMode) -> Split<R> {
         debug_assert_unit::<R>(wo);
-        let from_above = wo.z() >= R::zero();
-        let crossing = self.interface.crossing(from_above);
+        let crossing = self.interface.crossing(wo.z() >= R::zero());
         let c = wo.z().abs();
         let e_squared = crossing.e_squared(c);
         if e_squared <= R::zero() {
@@ -37,16 +38,14 @@ impl<R: Real> FresnelDielectric<R> {
         let e = e_squared.sqrt();
         let reflected = crossing.reflectance(c, e).unpolarised();
         let transmitted = R::one() - reflected;
-        let eta = crossing.eta;
-        let cos_t = e / eta;
         Split {
             reflected: (reflected > R::zero()).then(|| Sample::mirror(wo, R::Vec3::splat(reflected))),
             transmitted: (transmitted > R::zero()).then(|| Sample {
-                wi: R::Vec3::new(-(wo.x() / eta), -(wo.y() / eta), if from_above { -cos_t } else { cos_t }),
-                weight: R::Vec3::splat(transmitted * mode.crossing_scale(eta)),
+                wi: crossing.refracted(wo, e).0,
+                weight: R::Vec3::splat(transmitted * mode.crossing_scale(crossing.eta)),
                 pdf: Density::Discrete(R::one()),
                 lobe: Lobe::SpecularTransmission,
-                eta,
+                eta: crossing.eta,
             }),
         }
     }

@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | `alpha_x`, `alpha_y` | width of the distribution of slopes along the tangents x and y | 0 to 1; below 1e-4 smooth |
 //!
-//! All directions here are on the upper side, z ≥ 0; a model looks at a surface from below in a mirrored frame.
+//! All directions here are of unit length and on the upper side, z ≥ 0, which debug builds check; a model looks at a surface from below in a mirrored frame.
 //!
 //! - Normals: `D(m) = 1/(π αx αy q²)` with `q = (m_x/αx)² + (m_y/αy)² + m_z²` (T. Trowbridge and K. Reitz, Average
 //!   Irregularity Representation of a Rough Surface for Ray Reflection, 1975; B. Walter and others, Microfacet Models for
@@ -18,6 +18,7 @@
 //!
 //! Written with `s(w)`, nothing is divided by a cosine: along the surface every value is finite.
 
+use crate::valid::debug_assert_unit;
 use crate::{Real, Vector};
 use core::fmt;
 
@@ -26,6 +27,8 @@ use core::fmt;
 const SMOOTH: f64 = 1e-4;
 
 /// The distribution of a rough surface's microscopic normals, valid by construction.
+///
+/// [Manual](self).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ggx<R> {
     alpha_x: R,
@@ -87,10 +90,20 @@ impl<R: Real> Ggx<R> {
         self.alpha_x == R::zero()
     }
 
-    /// The mean of both roughnesses.
+    /// Roughness along the tangent x; zero for a smooth surface.
+    pub fn alpha_x(&self) -> R {
+        self.alpha_x
+    }
+
+    /// Roughness along the tangent y; zero for a smooth surface.
+    pub fn alpha_y(&self) -> R {
+        self.alpha_y
+    }
+
+    /// The roughness of the isotropic surface that stands for this one, √(αx αy).
     #[inline]
     pub(crate) fn mean_alpha(&self) -> R {
-        (self.alpha_x + self.alpha_y) * R::from_f64(0.5)
+        if self.alpha_x == self.alpha_y { self.alpha_x } else { (self.alpha_x * self.alpha_y).sqrt() }
     }
 
     /// The larger of both roughnesses.
@@ -109,6 +122,8 @@ impl<R: Real> Ggx<R> {
     /// `s(w)`: the microscopic surface that faces `w`, hidden parts included, projects to the area `(w_z + s)/2`.
     #[inline]
     fn stretched_length(&self, w: R::Vec3) -> R {
+        debug_assert_unit::<R>(w);
+        debug_assert!(w.z() >= R::zero(), "a direction on the upper side, found {w:?}");
         (w.z().squared() + (self.alpha_x * w.x()).squared() + (self.alpha_y * w.y()).squared()).sqrt()
     }
 
@@ -148,6 +163,7 @@ impl<R: Real> Ggx<R> {
     /// A normal that is seen from `wo`, from a point of the unit square.
     #[inline]
     pub fn sample(&self, wo: R::Vec3, [u, v]: [R; 2]) -> R::Vec3 {
+        debug_assert_unit::<R>(wo);
         // In the space where roughness is one, visible normals are half vectors of wo and a uniform direction of the cap.
         let wo = R::Vec3::new(wo.x() * self.alpha_x, wo.y() * self.alpha_y, wo.z()).normalised();
         let down = v * (R::one() + wo.z());

@@ -21,6 +21,8 @@ use crate::valid::debug_assert_unit;
 use crate::{Density, Lobe, Real, Sample, Vector};
 
 /// A highlight around the mirror direction.
+///
+/// [Manual](self).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GlossySpecular<R: Real> {
     /// Value of f in the mirror direction, per channel.

@@ -11,6 +11,8 @@ use crate::valid::debug_assert_unit;
 use crate::{Density, Lobe, Real, Sample, Vector};
 
 /// Reflects the same radiance in every direction.
+///
+/// [Manual](self).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lambertian<R: Real> {
     /// Reflected share, per channel, 0 to 1.

@@ -11,6 +11,8 @@ use crate::valid::debug_assert_unit;
 use crate::{Real, Sample, Split, Vector};
 
 /// Reflects `kr` of the light in exactly the mirror direction.
+///
+/// [Manual](self).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PerfectSpecular<R: Real> {
     /// Reflected share, per channel, 0 to 1.

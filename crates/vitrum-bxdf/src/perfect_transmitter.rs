@@ -15,6 +15,8 @@ use crate::valid::debug_assert_unit;
 use crate::{Density, Interface, Lobe, Real, Refraction, Sample, Split, TransportMode, Vector};
 
 /// Reflects `kr` and transmits `kt`; reflects everything in total internal reflection.
+///
+/// [Manual](self).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PerfectTransmitter<R: Real> {
     /// Reflected share, per channel, 0 to 1.

@@ -72,7 +72,7 @@ pub struct Sample<R: Real> {
     pub wi: R::Vec3,
     /// `f · |cos θi| / pdf` per channel: what the radiance arriving from `wi` is multiplied by.
     pub weight: R::Vec3,
-    /// The density with which `wi` was chosen.
+    /// The density with which `wi` was chosen, before it was rounded.
     pub pdf: Density<R>,
     /// The lobe that `wi` belongs to.
     pub lobe: Lobe,
@@ -113,13 +113,14 @@ impl<R: Real> Split<R> {
     /// No children.
     pub const NONE: Self = Self { reflected: None, transmitted: None };
 
-    /// One child, chosen by `uc` in [0, 1): the reflected one with `reflection / (reflection + transmission)`, numbers that
-    /// are positive where there are two children.
+    /// One child, chosen by `uc` in [0, 1): the reflected one with `reflection / (reflection + transmission)`; evenly where
+    /// both are so small that they are zero.
     #[inline]
     pub(crate) fn choose(self, uc: R, reflection: R, transmission: R) -> Option<Sample<R>> {
         match self {
             Self { reflected: Some(reflected), transmitted: Some(transmitted) } => {
-                let p = reflection / (reflection + transmission);
+                let sum = reflection + transmission;
+                let p = if sum > R::zero() { reflection / sum } else { R::from_f64(0.5) };
                 Some(if uc < p {
                     reflected.with_probability(p)
                 } else {

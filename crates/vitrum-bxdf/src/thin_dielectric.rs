@@ -17,6 +17,8 @@ use crate::valid::debug_assert_unit;
 use crate::{Density, Interface, Lobe, Real, Sample, Split, Vector};
 
 /// Reflects from both faces of a sheet and lets the rest go straight on.
+///
+/// [Manual](self).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThinDielectric<R: Real> {
     /// Above: what surrounds the sheet, on both sides. Below: what it is made of.

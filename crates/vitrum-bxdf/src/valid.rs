@@ -16,6 +16,13 @@ pub(crate) fn debug_assert_unit<R: Real>(w: R::Vec3) {
     );
 }
 
+/// Panics in debug builds unless `cos` is between −1 and 1.
+#[inline]
+#[track_caller]
+pub(crate) fn debug_assert_cosine<R: Real>(cos: R) {
+    debug_assert!(cos.abs().to_f64() <= 1.0 + TOLERANCE, "a cosine lies between -1 and 1, found {cos:?}");
+}
+
 #[cfg(all(test, debug_assertions))]
 mod tests {
     use crate::{FresnelDielectric, Interface, Lambertian, TransportMode};
@@ -26,6 +33,12 @@ mod tests {
     fn a_direction_that_was_not_normalised_is_refused() {
         let interface = Interface::new(1.0, 1.5).expect("both are indices");
         FresnelDielectric { interface }.split(DVec3::new(0.0, 0.0, 2.0), TransportMode::Radiance);
+    }
+
+    #[test]
+    #[should_panic(expected = "a cosine lies between -1 and 1")]
+    fn a_cosine_beyond_one_is_refused() {
+        Interface::new(1.0, 1.5).expect("both are indices").reflectance(1.5);
     }
 
     #[test]

@@ -31,6 +31,7 @@ fn tiny() -> impl Strategy<Value = Number> {
         Number { double: f64::MIN_POSITIVE / 3.0, single: f32::MIN_POSITIVE / 3.0 },
         Number { double: f64::MIN_POSITIVE, single: f32::MIN_POSITIVE },
         Number { double: 1e-160, single: 1e-22 },
+        number(1e-30),
         Number { double: f64::EPSILON / 4.0, single: f32::EPSILON / 4.0 },
     ];
     (prop::sample::select(sizes.to_vec()), any::<bool>())

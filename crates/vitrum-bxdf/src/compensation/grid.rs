@@ -11,7 +11,7 @@ use libm::sqrt;
 
 /// Nodes over the cosine, the roughness and the ratio of indices.
 pub(crate) const COSINES: usize = 40;
-pub(crate) const ROUGHNESSES: usize = 20;
+pub(crate) const ROUGHNESSES: usize = 24;
 pub(crate) const RATIOS: usize = 32;
 
 /// Indices further apart than this have no compensation.
@@ -20,8 +20,8 @@ pub(crate) const LARGEST_RATIO: f64 = 2.5;
 /// √(n² − 1) of the largest ratio.
 pub(crate) const LARGEST_Q: f64 = 2.291_287_847_477_92;
 
-/// Below this roughness E depends on μ/α alone, which the coordinate of the cosine takes care of.
-pub(crate) const LEAST_ALPHA: f64 = 1e-3;
+/// The least roughness: below, surfaces are smooth.
+pub(crate) const LEAST_ALPHA: f64 = 1e-4;
 
 /// The side of the interface that a direction is on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,20 +50,47 @@ pub(crate) fn of_ratio(q: f64, alpha: f64) -> f64 {
     place(q) / place(LARGEST_Q)
 }
 
-/// 0 along the surface, 1 along the normal. `critical` = q/n > 0.
-pub(crate) fn of_cosine(mu: f64, alpha: f64, critical: f64, side: Side) -> f64 {
-    const MASKING: f64 = 2.3;
-    const FRESNEL: f64 = 0.32;
-    const EVEN: f64 = 0.37;
-    const CRITICAL: f64 = 0.21;
-    // From 0 to 1, with its middle at the scale.
-    let from_grazing = |scale: f64| sqrt(mu * (1.0 + scale) / (mu + scale));
-    let sum = MASKING * from_grazing(alpha) + FRESNEL * from_grazing(critical) + EVEN * mu;
-    let whole = MASKING + FRESNEL + EVEN;
-    if side == Side::Rarer {
-        return sum / whole;
+/// The coordinate of the cosine for one roughness and ratio of indices.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Cosines {
+    alpha: f32,
+    /// Cosine of the critical angle, q/n > 0.
+    critical: f32,
+    /// Where the step at the critical angle begins along the surface, and one over its height.
+    low: f32,
+    per_height: f32,
+}
+
+const MASKING: f64 = 2.3;
+const FRESNEL: f64 = 0.32;
+const EVEN: f64 = 0.37;
+const CRITICAL: f64 = 0.21;
+
+impl Cosines {
+    pub(crate) fn new(alpha: f64, critical: f64) -> Self {
+        let mut cosines = Self { alpha: alpha as f32, critical: critical as f32, low: 0.0, per_height: 1.0 };
+        let (low, high) = (cosines.step(0.0), cosines.step(1.0));
+        cosines.low = low as f32;
+        cosines.per_height = (1.0 / (high - low)) as f32;
+        cosines
     }
-    let step = |mu: f64| (mu - critical) / ((mu - critical).abs() + alpha);
-    let (low, high) = (step(0.0), step(1.0));
-    (sum + CRITICAL * (step(mu) - low) / (high - low)) / (whole + CRITICAL)
+
+    /// From −1 to 1 about the critical angle, as wide as the roughness.
+    fn step(&self, mu: f64) -> f64 {
+        let beyond = mu - f64::from(self.critical);
+        beyond / (beyond.abs() + f64::from(self.alpha))
+    }
+
+    /// 0 along the surface, 1 along the normal.
+    pub(crate) fn coordinate(&self, mu: f64, side: Side) -> f64 {
+        // From 0 to 1, with its middle at the scale.
+        let from_grazing = |scale: f32| sqrt(mu * (1.0 + f64::from(scale)) / (mu + f64::from(scale)));
+        let sum = MASKING * from_grazing(self.alpha) + FRESNEL * from_grazing(self.critical) + EVEN * mu;
+        let whole = MASKING + FRESNEL + EVEN;
+        if side == Side::Rarer {
+            return sum / whole;
+        }
+        let step = (self.step(mu) - f64::from(self.low)) * f64::from(self.per_height);
+        (sum + CRITICAL * step) / (whole + CRITICAL)
+    }
 }

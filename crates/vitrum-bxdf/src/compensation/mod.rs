@@ -3,16 +3,14 @@
 pub(crate) mod grid;
 
 use crate::{Ggx, Interface, Real};
-use grid::{COSINES, LARGEST_RATIO, RATIOS, ROUGHNESSES, Side};
+use grid::{COSINES, Cosines, LARGEST_RATIO, RATIOS, ROUGHNESSES, Side};
 
 include!(concat!(env!("OUT_DIR"), "/compensation.rs"));
 
 /// Where in the table the albedos of one interface and roughness stand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Compensation {
-    alpha: f32,
-    /// Cosine of the critical angle, seen from the denser side.
-    critical: f32,
+    cosines: Cosines,
     /// The lower nodes of roughness and ratio.
     node: [u8; 2],
     /// How far beyond them, 0 to 1.
@@ -35,8 +33,7 @@ impl Compensation {
         let (i, roughness_beyond) = split(grid::of_roughness(alpha), ROUGHNESSES);
         let (j, ratio_beyond) = split(grid::of_ratio(q, alpha), RATIOS);
         Some(Self {
-            alpha: alpha as f32,
-            critical: into_rarer.critical_hi.to_f64() as f32,
+            cosines: Cosines::new(alpha, into_rarer.critical_hi.to_f64()),
             node: [i as u8, j as u8],
             beyond: [roughness_beyond, ratio_beyond],
             above: if above_is_rarer { Side::Rarer } else { Side::Denser },
@@ -50,8 +47,7 @@ impl Compensation {
         let is_above = z >= R::zero();
         let side = if is_above == (self.above == Side::Rarer) { Side::Rarer } else { Side::Denser };
         let mu = z.abs().at_most(R::one()).to_f64();
-        let cosine = grid::of_cosine(mu, f64::from(self.alpha), f64::from(self.critical), side);
-        let (k, beyond) = split(cosine, COSINES);
+        let (k, beyond) = split(self.cosines.coordinate(mu, side), COSINES);
         let [i, j] = self.node.map(usize::from);
         let along = |roughness: usize, ratio: usize| {
             let row = &ROOTS[grid::row(roughness, ratio, side)..][..COSINES];

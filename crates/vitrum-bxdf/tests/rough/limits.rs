@@ -1,6 +1,6 @@
 //! Where rough becomes smooth: at small roughness, and where indices match.
 
-use crate::stage::{at_angle, even, glass, interface, metal, single};
+use crate::stage::{at_angle, direction_in, even, glass, interface, mean_over_normals, metal, single};
 use glam::DVec3;
 use vitrum_bxdf::{Bxdf, Density, FresnelDielectric, Ggx, Interface, RoughDielectric, Sample, TransportMode};
 
@@ -15,28 +15,9 @@ fn arrives(sample: Option<Sample<f64>>) -> f64 {
     sample.map_or(0.0, |sample| sample.weight.x * sky(sample.wi))
 }
 
-/// The mean over evenly spread normals of what `value` makes of both children of each, reflected and transmitted.
-fn mean(
-    model: &RoughDielectric<f64>,
-    wo: DVec3,
-    normals: u32,
-    value: impl Fn(Option<Sample<f64>>) -> f64,
-) -> f64 {
-    let side = f64::signum(wo.z);
-    let of_normal = |u: [f64; 2]| {
-        let m = model.roughness().sample(DVec3::new(wo.x, wo.y, wo.z.abs()), u);
-        let cos = wo.dot(DVec3::new(m.x, m.y, side * m.z));
-        let reflected = model.interface().reflectance(cos * side).unpolarised();
-        let [reflection, transmission] =
-            [0.0, 1.0 - f64::EPSILON].map(|uc| value(model.sample(wo, uc, u, MODE)));
-        reflected * reflection + (1.0 - reflected) * transmission
-    };
-    even(normals).map(of_normal).sum::<f64>() / f64::from(normals)
-}
-
 /// The light that arrives from `wo` through rough glass.
 fn seen(model: &RoughDielectric<f64>, wo: DVec3, normals: u32) -> f64 {
-    mean(model, wo, normals, arrives)
+    mean_over_normals(model, wo, normals, arrives)
 }
 
 /// The same of a smooth model.
@@ -56,7 +37,7 @@ fn small_roughness_tends_to_smooth_glass() {
         let [reflected, transmitted] =
             [split.reflected, split.transmitted].map(|child| child.expect("both").wi);
         let spreads = [0.02, 0.01, 0.005].map(|alpha| {
-            mean(&glass(1.0, 1.5, [alpha; 2]), wo, 1 << 17, |sample| {
+            mean_over_normals(&glass(1.0, 1.5, [alpha; 2]), wo, 1 << 17, |sample| {
                 sample.map_or(0.0, |sample| {
                     let limit = if sample.lobe.is_transmission() { transmitted } else { reflected };
                     (sample.wi - limit).length_squared()
@@ -117,13 +98,69 @@ fn matching_indices_make_rough_glass_vanish() {
     );
 }
 
-/// In single precision the switch comes earlier, and no later than half vectors lose their digits.
+/// The switch depends on the pair of indices, not on its order, and comes earlier in single precision.
 #[test]
-fn single_precision_switches_where_it_must() {
-    let rough = |n: f32| {
-        let interface = Interface::new(1.0_f32, n).expect("both are indices");
-        RoughDielectric::new(interface, Ggx::isotropic(0.5).expect("a roughness"))
+fn the_switch_comes_where_half_vectors_lose_their_digits() {
+    let rough = |above: f32, below: f32, alpha: f32| {
+        let interface = Interface::new(above, below).expect("both are indices");
+        RoughDielectric::new(interface, Ggx::isotropic(alpha).expect("a roughness"))
     };
-    assert!(rough(1.0001).is_specular() && !rough(1.0003).is_specular());
-    assert!(!glass(1.0, 1.000_000_1, [0.5; 2]).is_specular());
+    assert!(rough(1.0, 1.5, 1.1e-4).roughness().alpha_x() > 0.0 && !rough(1.0, 1.5, 1.1e-4).is_specular());
+    for (alpha, specular) in [(0.04, true), (0.06, false)] {
+        assert_eq!(rough(1.0, 1.0003, alpha).is_specular(), specular, "{alpha}");
+        assert_eq!(rough(1.0003, 1.0, alpha).is_specular(), specular, "{alpha}");
+    }
+    assert!(!glass(1.0, 1.0 + 1e-13, [0.5; 2]).is_specular());
+    assert!(glass(1.0, 1.0 + 1e-14, [0.5; 2]).is_specular());
+}
+
+/// Single precision sees what double precision sees, on both sides of its switch.
+#[test]
+fn single_precision_sees_the_same() {
+    for (n, alpha) in [(1.5, 0.3), (1.5, 0.02), (1.0003, 0.06), (1.0003, 0.04), (2.42, 0.7)] {
+        let double = glass(1.0, n, [alpha; 2]);
+        let interface = Interface::new(1.0_f32, n as f32).expect("both are indices");
+        let single = RoughDielectric::new(interface, Ggx::isotropic(alpha as f32).expect("a roughness"));
+        for wo in [at_angle(10.0, true), at_angle(75.0, true), at_angle(25.0, false), at_angle(80.0, false)] {
+            let narrow = direction_in::<f32>(wo);
+            let wide = |sample: Option<Sample<f32>>| {
+                sample.map_or(0.0, |s| f64::from(s.weight.x) * sky(s.wi.as_dvec3()))
+            };
+            let found = if single.is_specular() {
+                let split = single.split(narrow, MODE);
+                wide(split.reflected) + wide(split.transmitted)
+            } else {
+                mean_over_normals(&single, narrow, 1 << 14, wide)
+            };
+            let expected = seen(&double, narrow.as_dvec3().normalize(), 1 << 14);
+            assert!((found - expected).abs() < 2e-3, "{n}, {alpha}, {wo}: {found} and {expected}");
+        }
+    }
+}
+
+/// What the page says of densities in single precision: that of a sample is the one of `pdf`, down to roughness 0.02, and
+/// both agree with double precision.
+#[test]
+fn single_precision_knows_its_densities() {
+    for alpha in [0.02_f32, 0.1, 0.5] {
+        let interface = Interface::new(1.0_f32, 1.5).expect("both are indices");
+        let single = RoughDielectric::new(interface, Ggx::isotropic(alpha).expect("a roughness"));
+        let double = glass(1.0, 1.5, [f64::from(alpha); 2]);
+        for degrees in [0.0, 30.0, 60.0, 85.0, 89.5] {
+            for above in [true, false] {
+                let wo = direction_in::<f32>(at_angle(degrees, above));
+                for [uc, u, v] in even(2000) {
+                    let sample = single.sample(wo, uc as f32, [u as f32, v as f32], MODE);
+                    let Some(sample) = sample else { continue };
+                    let Density::SolidAngle(claimed) = sample.pdf else { panic!("it is rough") };
+                    let [wo, wi] = [wo, sample.wi].map(|w| w.as_dvec3().normalize());
+                    let expected = double.pdf(wo, wi);
+                    for found in [claimed, single.pdf(wo.as_vec3(), sample.wi)] {
+                        let error = (f64::from(found) / expected - 1.0).abs();
+                        assert!(error < 0.01, "{alpha}, {degrees}, {above}: {found} and {expected}");
+                    }
+                }
+            }
+        }
+    }
 }

@@ -1,7 +1,9 @@
 //! Models, directions and numbers.
 
 use glam::DVec3;
-use vitrum_bxdf::{ComplexIndex, Conductor, Ggx, Interface, RoughDielectric};
+use vitrum_bxdf::{
+    ComplexIndex, Conductor, Ggx, Interface, Real, RoughDielectric, Sample, TransportMode, Vector,
+};
 
 pub(crate) fn interface(above: f64, below: f64) -> Interface<f64> {
     Interface::new(above, below).expect("both are indices")
@@ -48,4 +50,38 @@ pub(crate) fn even<const D: usize>(points: u32) -> impl Iterator<Item = [f64; D]
         power
     });
     (0..points).map(move |index| steps.map(|step| (0.5 + f64::from(index) * step).fract()))
+}
+
+/// A direction of this precision, of unit length in it.
+pub(crate) fn direction_in<R: Real>(w: DVec3) -> R::Vec3 {
+    R::Vec3::new(R::from_f64(w.x), R::from_f64(w.y), R::from_f64(w.z)).normalised()
+}
+
+/// The mean over evenly spread normals of what `value` makes of both children of each, reflected and transmitted: no random
+/// choice between them, so that a few thousand normals are good for three digits and a half.
+pub(crate) fn mean_over_normals<R: Real>(
+    model: &RoughDielectric<R>,
+    wo: R::Vec3,
+    normals: u32,
+    value: impl Fn(Option<Sample<R>>) -> f64,
+) -> f64 {
+    even(normals).map(|u| both_children(model, wo, u, &value)).sum::<f64>() / f64::from(normals)
+}
+
+/// The same for one normal.
+pub(crate) fn both_children<R: Real>(
+    model: &RoughDielectric<R>,
+    wo: R::Vec3,
+    u: [f64; 2],
+    value: impl Fn(Option<Sample<R>>) -> f64,
+) -> f64 {
+    let below = wo.z() < R::zero();
+    let u = u.map(R::from_f64);
+    let m = model.roughness().sample(if below { wo.mirrored() } else { wo }, u);
+    let cos = wo.dot(if below { m.mirrored() } else { m }).at_most(R::one());
+    let reflected = model.interface().reflectance(if below { -cos } else { cos }).unpolarised().to_f64();
+    let last = R::one() - R::epsilon() * R::from_f64(0.5);
+    let [reflection, transmission] =
+        [R::zero(), last].map(|uc| value(model.sample(wo, uc, u, TransportMode::Radiance)));
+    reflected * reflection + (1.0 - reflected) * transmission
 }
