@@ -67,7 +67,8 @@ fn closest(mesh: &TriangleMesh, ray: &Ray) -> Option<Hit> {
     nearest.found()
 }
 
-/// The tree finds exactly what trying every triangle finds: distance, face and weights, to the last bit.
+/// The tree finds exactly what trying every triangle finds: distance, face and weights, to the last bit, with the
+/// instructions of this processor and with those of any.
 #[test]
 fn the_tree_finds_what_trying_every_triangle_finds() {
     let mut random = Random(1);
@@ -83,6 +84,23 @@ fn the_tree_finds_what_trying_every_triangle_finds() {
                 m.positions[3 * i + 1] = m.positions[3 * i] + random.vector() * 1e-6;
             }
             m
+        },
+        // Four levels of scale in one mesh, and more triangles than fit into a few leaves.
+        {
+            let mut m = MeshData::default();
+            for (level, size) in [0.3, 1e-2, 1e-4, 1e-6].into_iter().enumerate() {
+                let part = soup(&mut random, 400, size);
+                let base = m.positions.len() as u32;
+                m.positions.extend(part.positions.iter().map(|p| *p * 10.0_f64.powi(-(level as i32))));
+                m.triangles.extend(part.triangles.iter().map(|t| t.map(|corner| corner + base)));
+            }
+            m
+        },
+        // All corners in three points, one triangle apart from the rest.
+        MeshData {
+            positions: vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::splat(1e-9)],
+            triangles: [[0, 1, 2]; 40].into_iter().chain([[0, 3, 2]]).collect(),
+            ..MeshData::default()
         },
         // A stack of equal triangles, and the same once more turned around.
         MeshData {
@@ -104,6 +122,7 @@ fn the_tree_finds_what_trying_every_triangle_finds() {
     }
     for (number, data) in meshes.iter().enumerate() {
         let mesh = TriangleMesh::new(data).expect("valid mesh");
+        let portable = mesh.clone().with_portable_instructions();
         let (centre, size) = (mesh.bounds().centre(), mesh.bounds().extent().max_element());
         let mut hits = 0;
         for i in 0..3000 {
@@ -120,6 +139,9 @@ fn the_tree_finds_what_trying_every_triangle_finds() {
             let found = closest(&mesh, &ray);
             assert_eq!(found, oracle.found(), "mesh {number}, {ray:?}");
             let any = mesh.any(&ray, &Query::new(ray), 0, f64::INFINITY, &mut Counters::default());
+            assert_eq!(any, found.is_some());
+            assert_eq!(closest(&portable, &ray), found, "on any processor: mesh {number}, {ray:?}");
+            let any = portable.any(&ray, &Query::new(ray), 0, f64::INFINITY, &mut Counters::default());
             assert_eq!(any, found.is_some());
             hits += u32::from(found.is_some());
         }

@@ -47,16 +47,12 @@ impl TriangleBlock {
     }
 }
 
-/// What the tests need to know of a ray: the axis of its largest component, and the shear that lays it along that axis; in
-/// both precisions.
-pub(crate) struct Sheared<'r> {
-    ray: &'r Ray,
-    axes: [usize; 3],
-    shear: [f64; 2],
-    /// Of the ray, advanced and rounded.
+/// What the conservative test needs to know of a ray: the axis of its largest component, and the shear that lays it along
+/// that axis.
+pub(crate) struct Sheared {
     origin: Vec3,
-    conservative_axes: [usize; 3],
-    conservative_shear: [f32; 2],
+    axes: [usize; 3],
+    shear: [f32; 2],
     per_depth: f32,
 }
 
@@ -85,24 +81,24 @@ fn axes(d: [f64; 3]) -> [usize; 3] {
 /// How far the roundings of the ray may move a point along it, in units of the frame.
 const DEPTH_PAD: f32 = 4e-6;
 
-impl<'r> Sheared<'r> {
-    /// `origin` and `direction` are the ray's, advanced and rounded.
-    #[inline]
-    pub(crate) fn new(ray: &'r Ray, origin: Vec3, direction: Vec3) -> Self {
-        let conservative_axes = axes(direction.as_dvec3().to_array());
-        let [x, y, z] = conservative_axes;
+impl Sheared {
+    /// A ray that was advanced and rounded.
+    #[inline(always)]
+    pub(crate) fn new(origin: Vec3, direction: Vec3) -> Self {
+        let d = direction.abs();
+        let largest = if d.x > d.y {
+            if d.x > d.z { 0 } else { 2 }
+        } else if d.y > d.z {
+            1
+        } else {
+            2
+        };
+        let [x, y, z] = [(largest + 1) % 3, (largest + 2) % 3, largest];
         let per_depth = 1.0 / direction[z];
-        let conservative_shear = [direction[x] * per_depth, direction[y] * per_depth];
-        let axes = axes(ray.direction.to_array());
-        let [x, y, z] = axes;
-        let d = ray.direction;
         Self {
-            ray,
-            axes,
-            shear: [d[x] / d[z], d[y] / d[z]],
             origin,
-            conservative_axes,
-            conservative_shear,
+            axes: [x, y, z],
+            shear: [direction[x] * per_depth, direction[y] * per_depth],
             per_depth,
         }
     }
@@ -116,12 +112,12 @@ impl<'r> Sheared<'r> {
     pub(crate) fn may_meet<L: Lanes>(&self, block: &TriangleBlock, limit: f32) -> u32 {
         // No closures here: they would be compiled for any processor.
         let project = Projection {
-            axes: self.conservative_axes,
-            shear: [L::splat(-self.conservative_shear[0]), L::splat(-self.conservative_shear[1])],
+            axes: self.axes,
+            shear: [L::splat(-self.shear[0]), L::splat(-self.shear[1])],
             origin: [
-                L::splat(self.origin[self.conservative_axes[0]]),
-                L::splat(self.origin[self.conservative_axes[1]]),
-                L::splat(self.origin[self.conservative_axes[2]]),
+                L::splat(self.origin[self.axes[0]]),
+                L::splat(self.origin[self.axes[1]]),
+                L::splat(self.origin[self.axes[2]]),
             ],
         };
         let a = project.corner(&block.corners[0]);
@@ -141,25 +137,26 @@ impl<'r> Sheared<'r> {
         let ahead = L::splat(-DEPTH_PAD).at_most(farthest) & nearest.at_most(L::splat(limit + DEPTH_PAD));
         crossed & ahead
     }
+}
 
-    /// Where the ray's line meets the triangle, border included, from either side; `None` when it misses, or sees the
-    /// triangle exactly edge on: then it meets the neighbours instead.
-    #[inline]
-    pub(crate) fn meet(&self, corners: &[DVec3; 3]) -> Option<Met> {
-        let d = self.ray.direction;
-        let [x, y, z] = self.axes;
-        let relative = corners.map(|c| c - self.ray.origin);
-        let [a, b, c] = relative.map(|p| [p[x] - self.shear[0] * p[z], p[y] - self.shear[1] * p[z]]);
-        let edge = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
-        let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
-        let sum = u + v + w;
-        if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) || sum == 0.0 {
-            return None;
-        }
-        let (u, v, w) = (u / sum, v / sum, w / sum);
-        let p = relative[0] * u + relative[1] * v + relative[2] * w;
-        Some(Met { t: p.dot(d) / d.dot(d), barycentrics: [v, w] })
+/// Where the ray's line meets the triangle, border included, from either side; `None` when it misses, or sees the triangle
+/// exactly edge on: then it meets the neighbours instead.
+#[inline]
+pub(crate) fn meet(ray: &Ray, corners: &[DVec3; 3]) -> Option<Met> {
+    let d = ray.direction;
+    let [x, y, z] = axes(d.to_array());
+    let shear = [d[x] / d[z], d[y] / d[z]];
+    let relative = corners.map(|c| c - ray.origin);
+    let [a, b, c] = relative.map(|p| [p[x] - shear[0] * p[z], p[y] - shear[1] * p[z]]);
+    let edge = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
+    let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
+    let sum = u + v + w;
+    if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) || sum == 0.0 {
+        return None;
     }
+    let (u, v, w) = (u / sum, v / sum, w / sum);
+    let p = relative[0] * u + relative[1] * v + relative[2] * w;
+    Some(Met { t: p.dot(d) / d.dot(d), barycentrics: [v, w] })
 }
 
 /// How corners are laid along the ray.
@@ -210,14 +207,14 @@ mod tests {
     }
 
     fn may_meet(ray: &Ray, limit: f32) -> bool {
-        let sheared = Sheared::new(ray, ray.origin.as_vec3(), ray.direction.as_vec3());
+        let sheared = Sheared::new(ray.origin.as_vec3(), ray.direction.as_vec3());
         let found = [0, 5].map(|lane| sheared.may_meet::<Portable>(&block(lane), limit) >> lane & 1 == 1);
         assert_eq!(found[0], found[1], "every lane is alike");
         found[0]
     }
 
     fn meet(ray: &Ray) -> Option<Met> {
-        Sheared::new(ray, ray.origin.as_vec3(), ray.direction.as_vec3()).meet(&corners())
+        super::meet(ray, &corners())
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! A triangle mesh in the form that rays are traced against.
 
 use super::MeshData;
-use super::triangle::{Sheared, TriangleBlock};
+use super::triangle::{Sheared, TriangleBlock, meet};
 use crate::aggregate::{Counters, Hit, Nearest};
 use crate::departure::{Departure, Query};
 #[cfg(target_arch = "x86_64")]
@@ -82,13 +82,13 @@ pub(crate) struct MeshPoint {
 /// Looks for triangles that the ray may meet.
 struct Candidates<'m, F> {
     blocks: &'m [TriangleBlock],
-    sheared: Sheared<'m>,
+    sheared: Sheared,
     visit: F,
 }
 
 impl<F> Visitor for Candidates<'_, F>
 where
-    F: FnMut(&Sheared<'_>, u32, &[DVec3; 3], f32) -> ControlFlow<(), f32>,
+    F: FnMut(u32, &[DVec3; 3], f32) -> ControlFlow<(), f32>,
 {
     #[inline(always)]
     fn visit<L: Lanes>(&mut self, block: usize, mut limit: f32) -> ControlFlow<(), f32> {
@@ -99,7 +99,7 @@ where
             candidates &= candidates - 1;
             let face = block.faces[lane];
             if face != WideTree::NONE {
-                limit = (self.visit)(&self.sheared, face, &block.corners(lane), limit)?;
+                limit = (self.visit)(face, &block.corners(lane), limit)?;
             }
         }
         ControlFlow::Continue(limit)
@@ -242,8 +242,8 @@ impl TriangleMesh {
     ) {
         let Some(ray) = self.frame.enter(ray, nearest.limit()) else { return };
         let limit = ray.box_limit(nearest.limit());
-        self.candidates(&ray, limit, |sheared, face, corners, limit| {
-            if let Some(hit) = self.settle(&ray, sheared, query, object, face, corners, counters)
+        self.candidates(&ray, limit, |face, corners, limit| {
+            if let Some(hit) = self.settle(&ray, query, object, face, corners, counters)
                 && nearest.offer(hit)
             {
                 return ControlFlow::Continue(ray.box_limit(nearest.limit()));
@@ -264,8 +264,8 @@ impl TriangleMesh {
     ) -> bool {
         let Some(ray) = self.frame.enter(ray, limit) else { return false };
         let mut found = false;
-        self.candidates(&ray, ray.box_limit(limit), |sheared, face, corners, box_limit| {
-            match self.settle(&ray, sheared, query, object, face, corners, counters) {
+        self.candidates(&ray, ray.box_limit(limit), |face, corners, box_limit| {
+            match self.settle(&ray, query, object, face, corners, counters) {
                 Some(hit) if hit.t < limit => {
                     found = true;
                     ControlFlow::Break(())
@@ -276,15 +276,20 @@ impl TriangleMesh {
         found
     }
 
+    /// The same mesh, searched with the instructions of any processor.
+    #[cfg(test)]
+    pub(crate) fn with_portable_instructions(self) -> Self {
+        Self { isa: Isa::Portable, ..self }
+    }
+
     /// The same as [`closest`](Self::closest) by trying every triangle in double precision: the oracle that the tree is
     /// tested against.
     #[cfg(test)]
     pub(crate) fn closest_of_all(&self, ray: &Ray, query: &Query, nearest: &mut Nearest) {
         let Some(ray) = self.frame.enter(ray, f64::INFINITY) else { return };
-        let sheared = Sheared::new(&ray.exact, ray.origin, ray.direction);
         for face in 0..self.triangles.len() as u32 {
             let corners = self.corners(face).map(|c| c.as_dvec3());
-            let hit = self.settle(&ray, &sheared, query, 0, face, &corners, &mut Counters::default());
+            let hit = self.settle(&ray, query, 0, face, &corners, &mut Counters::default());
             if let Some(hit) = hit {
                 nearest.offer(hit);
             }
@@ -297,7 +302,7 @@ impl TriangleMesh {
         &self,
         ray: &FrameRay,
         limit: f32,
-        visit: impl FnMut(&Sheared<'_>, u32, &[DVec3; 3], f32) -> ControlFlow<(), f32>,
+        visit: impl FnMut(u32, &[DVec3; 3], f32) -> ControlFlow<(), f32>,
     ) {
         match self.isa {
             Isa::Portable => self.candidates_with::<Portable>(ray, limit, visit),
@@ -314,7 +319,7 @@ impl TriangleMesh {
         &self,
         ray: &FrameRay,
         limit: f32,
-        visit: impl FnMut(&Sheared<'_>, u32, &[DVec3; 3], f32) -> ControlFlow<(), f32>,
+        visit: impl FnMut(u32, &[DVec3; 3], f32) -> ControlFlow<(), f32>,
     ) {
         self.candidates_with::<Avx2>(ray, limit, visit);
     }
@@ -324,19 +329,17 @@ impl TriangleMesh {
         &self,
         ray: &FrameRay,
         limit: f32,
-        mut visit: impl FnMut(&Sheared<'_>, u32, &[DVec3; 3], f32) -> ControlFlow<(), f32>,
+        mut visit: impl FnMut(u32, &[DVec3; 3], f32) -> ControlFlow<(), f32>,
     ) {
-        let sheared = Sheared::new(&ray.exact, ray.origin, ray.direction);
+        let sheared = Sheared::new(ray.origin, ray.direction);
         self.tree.walk::<L>(ray, limit, &mut Candidates { blocks: &self.blocks, sheared, visit: &mut visit });
     }
 
     /// Tests one triangle in double precision and asks whether it counts.
     #[inline]
-    #[expect(clippy::too_many_arguments, reason = "a ray with its history, and a triangle")]
     fn settle(
         &self,
         ray: &FrameRay,
-        sheared: &Sheared<'_>,
         query: &Query,
         object: u32,
         face: u32,
@@ -347,7 +350,7 @@ impl TriangleMesh {
         if departed.is_some_and(|d| d.face == face) {
             return None;
         }
-        let met = sheared.meet(corners)?;
+        let met = meet(&ray.exact, corners)?;
         let mut t = met.t / ray.t_scale;
         if let Some(departed) = departed {
             // A neighbour within the rounding error of the origin. Whether it seems to lie before or behind says nothing.

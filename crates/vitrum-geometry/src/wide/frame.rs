@@ -13,7 +13,10 @@ pub(crate) struct UnitFrame {
     centre: DVec3,
     /// A power of two, so that scaling is exact.
     scale: f64,
+    /// Half of the bounds, padded.
     half_extent: DVec3,
+    /// Of the ball around them.
+    radius_squared: f64,
 }
 
 /// A ray in a unit frame.
@@ -22,7 +25,7 @@ pub(crate) struct FrameRay {
     pub(crate) exact: Ray,
     /// A power of two.
     pub(crate) t_scale: f64,
-    /// Where the ray comes within the bounds: the origin below stands there.
+    /// Where the ray comes within the bounds, if it starts far from them: the origin below stands there.
     t_start: f64,
     /// Advanced and rounded.
     pub(crate) origin: Vec3,
@@ -35,8 +38,8 @@ impl UnitFrame {
     pub(crate) fn around(bounds: &Bounds) -> Self {
         let extent = bounds.extent().max_element();
         let scale = if extent > 0.0 { 1.0 / power_of_two_above(extent) } else { 1.0 };
-        let half_extent = bounds.extent() * (0.5 * scale);
-        Self { centre: bounds.centre(), scale, half_extent }
+        let half_extent = bounds.extent() * (0.5 * scale) + DVec3::splat(f64::from(PAD));
+        Self { centre: bounds.centre(), scale, half_extent, radius_squared: half_extent.dot(half_extent) }
     }
 
     /// A point of the mesh or scene in this frame.
@@ -53,29 +56,16 @@ impl UnitFrame {
         self.scale
     }
 
-    /// The ray in this frame, or `None` when it misses the bounds or reaches them only beyond `limit` (in units of `ray`).
+    /// The ray in this frame, or `None` when it comes from afar and misses the bounds or reaches them only beyond `limit` (in
+    /// units of `ray`).
     #[inline]
     pub(crate) fn enter(&self, ray: &Ray, limit: f64) -> Option<FrameRay> {
-        let direction = ray.direction * self.scale;
-        let t_scale = power_of_two_above(direction.abs().max_element());
-        let exact = Ray::new(self.inward(ray.origin), direction / t_scale);
-        let half = self.half_extent + DVec3::splat(f64::from(PAD));
-        let (mut t_start, mut t_end) = (0.0f64, limit * t_scale + f64::from(PAD));
-        for axis in 0..3 {
-            let (o, d) = (exact.origin[axis], exact.direction[axis]);
-            if d == 0.0 {
-                if o.abs() > half[axis] {
-                    return None;
-                }
-            } else {
-                let (a, b) = ((-half[axis] - o) / d, (half[axis] - o) / d);
-                t_start = t_start.max(a.min(b));
-                t_end = t_end.min(a.max(b));
-            }
-        }
-        if t_start > t_end {
-            return None;
-        }
+        let scaled = ray.direction * self.scale;
+        let t_scale = power_of_two_above(scaled.abs().max_element());
+        let exact = Ray::new(self.inward(ray.origin), scaled * (1.0 / t_scale));
+        // Origins near the bounds have small coordinates already: rays that leave a surface go no further.
+        let near = exact.origin.dot(exact.origin) <= self.radius_squared;
+        let t_start = if near { 0.0 } else { self.advance(&exact, limit * t_scale + f64::from(PAD))? };
         let direction = exact.direction.as_vec3();
         // A component that is (nearly) zero stands for a tiny one: no infinity times zero below, and the displacement of
         // 1e-20 vanishes in the padding.
@@ -83,8 +73,29 @@ impl UnitFrame {
         let reciprocal =
             Vec3::new(away_from_zero(direction.x), away_from_zero(direction.y), away_from_zero(direction.z))
                 .recip();
-        let origin = exact.at(t_start).as_vec3();
-        Some(FrameRay { exact, t_scale, t_start, origin, direction, reciprocal })
+        Some(FrameRay { exact, t_scale, t_start, origin: exact.at(t_start).as_vec3(), direction, reciprocal })
+    }
+}
+
+impl UnitFrame {
+    /// Where a ray comes within the bounds, or `None` when it does not before `limit`.
+    #[inline]
+    fn advance(&self, ray: &Ray, limit: f64) -> Option<f64> {
+        let (mut start, mut end) = (0.0f64, limit);
+        for axis in 0..3 {
+            let (o, d, half) = (ray.origin[axis], ray.direction[axis], self.half_extent[axis]);
+            if d == 0.0 {
+                if o.abs() > half {
+                    return None;
+                }
+            } else {
+                let r = 1.0 / d;
+                let (a, b) = ((-half - o) * r, (half - o) * r);
+                start = start.max(a.min(b));
+                end = end.min(a.max(b));
+            }
+        }
+        (start <= end).then_some(start)
     }
 }
 

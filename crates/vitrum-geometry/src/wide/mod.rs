@@ -23,6 +23,7 @@ pub(crate) use lanes::{Lanes, Portable};
 
 use obvhs::aabb::Aabb;
 use obvhs::{Boundable, BvhBuildParams};
+use std::mem::MaybeUninit;
 use std::ops::ControlFlow;
 use std::time::Duration;
 use vitrum_math::Vec3;
@@ -204,23 +205,25 @@ impl WideTree {
     /// Shows `visitor` the blocks whose boxes the ray meets before the limit, near boxes first.
     #[inline(always)]
     pub(crate) fn walk<L: Lanes>(&self, ray: &FrameRay, limit: f32, visitor: &mut impl Visitor) {
+        // Not filled with anything: that would take longer than a ray that misses.
         if self.depth <= SHALLOW {
-            self.walk_with::<L>(&mut [Waiting(0); SHALLOW * (WIDTH - 1) + 1], ray, limit, visitor);
+            let mut stack = [MaybeUninit::uninit(); SHALLOW * (WIDTH - 1) + 1];
+            self.walk_with::<L>(&mut Stack::new(&mut stack), ray, limit, visitor);
         } else {
-            self.walk_with::<L>(&mut vec![Waiting(0); self.depth * (WIDTH - 1) + 1], ray, limit, visitor);
+            let mut stack = vec![MaybeUninit::uninit(); self.depth * (WIDTH - 1) + 1];
+            self.walk_with::<L>(&mut Stack::new(&mut stack), ray, limit, visitor);
         }
     }
 
     #[inline(always)]
     fn walk_with<L: Lanes>(
         &self,
-        stack: &mut [Waiting],
+        stack: &mut Stack<'_>,
         ray: &FrameRay,
         mut limit: f32,
         visitor: &mut impl Visitor,
     ) {
         let slabs = Slabs::<L>::new(ray);
-        let mut waiting = 0;
         let mut current = Child(0);
         loop {
             match current.kind() {
@@ -246,32 +249,21 @@ impl WideTree {
                             (first, second) = (second, first);
                         }
                         if !more {
-                            stack[waiting] = second;
-                            waiting += 1;
+                            stack.push(second);
                             current = first.child();
                             continue;
                         }
                         // Three or more: sorted by insertion, the farthest first.
-                        let bottom = waiting;
-                        stack[waiting] = second;
-                        stack[waiting + 1] = first;
-                        waiting += 2;
+                        let bottom = stack.height;
+                        stack.push(second);
+                        stack.push(first);
                         loop {
                             let (entry, more) = next();
-                            let mut place = waiting;
-                            while place > bottom && stack[place - 1].0 < entry.0 {
-                                stack[place] = stack[place - 1];
-                                place -= 1;
-                            }
-                            stack[place] = entry;
-                            waiting += 1;
+                            stack.insert(entry, bottom);
                             if !more {
                                 break;
                             }
                         }
-                        waiting -= 1;
-                        current = stack[waiting].child();
-                        continue;
                     }
                 }
                 Kind::Leaf { first, blocks } => {
@@ -283,19 +275,60 @@ impl WideTree {
                     }
                 }
             }
-            // The nearest of what was put off, unless something nearer has been found since.
+            // The nearest of what waits, unless something nearer has been found since.
             loop {
-                if waiting == 0 {
-                    return;
-                }
-                waiting -= 1;
-                let next = stack[waiting];
+                let Some(next) = stack.pop() else { return };
                 if next.distance() <= limit {
                     current = next.child();
                     break;
                 }
             }
         }
+    }
+}
+
+/// What waits, the nearest on top.
+struct Stack<'s> {
+    entries: &'s mut [MaybeUninit<Waiting>],
+    /// So many from the first on are initialised.
+    height: usize,
+}
+
+impl<'s> Stack<'s> {
+    fn new(entries: &'s mut [MaybeUninit<Waiting>]) -> Self {
+        Self { entries, height: 0 }
+    }
+
+    #[inline(always)]
+    fn push(&mut self, entry: Waiting) {
+        self.entries[self.height].write(entry);
+        self.height += 1;
+    }
+
+    #[inline(always)]
+    fn pop(&mut self) -> Option<Waiting> {
+        self.height = self.height.checked_sub(1)?;
+        Some(self.read(self.height))
+    }
+
+    /// Below the nearer ones of those above `bottom`.
+    #[inline(always)]
+    fn insert(&mut self, entry: Waiting, bottom: usize) {
+        let mut place = self.height;
+        while place > bottom && self.read(place - 1).0 < entry.0 {
+            self.entries[place] = self.entries[place - 1];
+            place -= 1;
+        }
+        self.entries[place].write(entry);
+        self.height += 1;
+    }
+
+    /// One of those that were pushed, or the one on top that was just popped.
+    #[inline(always)]
+    #[allow(unsafe_code)]
+    fn read(&self, place: usize) -> Waiting {
+        // SAFETY: places below the height have been written by `push` or `insert`, and `pop` only lowers the height.
+        unsafe { self.entries[place].assume_init() }
     }
 }
 

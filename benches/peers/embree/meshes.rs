@@ -1,0 +1,96 @@
+//! The meshes of the comparison.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use vitrum::geometry::mesh::MeshData;
+use vitrum::io::obj;
+use vitrum::math::DVec3;
+
+pub(crate) struct Named {
+    pub(crate) name: &'static str,
+    pub(crate) mesh: MeshData,
+}
+
+/// All of them; those that stand among the assets only where these are.
+pub(crate) fn all(repository: &Path, assets: Option<&Path>) -> Vec<Named> {
+    let gallery = |name: &str| read(&repository.join("scenes/gallery/meshes").join(name));
+    let mut meshes = vec![
+        Named { name: "gem", mesh: gallery("brilliant.obj") },
+        Named { name: "wine glass", mesh: gallery("wine_glass.obj") },
+    ];
+    if let Some(assets) = assets {
+        let bunny = close(read(&assets.join("obj/stanford-bunny.obj")));
+        meshes.push(Named { name: "bunny", mesh: bunny });
+        meshes.push(Named { name: "dragon", mesh: read(&assets.join("obj/stanford-dragon.obj")) });
+    }
+    meshes.push(Named { name: "generated", mesh: bumpy(800, 813) });
+    meshes
+}
+
+fn read(file: &Path) -> MeshData {
+    let parts = obj::read(file).unwrap_or_else(|error| panic!("{error}")).parts;
+    let mut whole = MeshData::default();
+    for part in parts {
+        let base = whole.positions.len() as u32;
+        whole.positions.extend(part.mesh.positions);
+        whole.triangles.extend(part.mesh.triangles.iter().map(|t| t.map(|corner| corner + base)));
+    }
+    whole
+}
+
+/// The same with every hole closed by a fan around its middle.
+fn close(mut mesh: MeshData) -> MeshData {
+    let mut open: BTreeMap<(u32, u32), i32> = BTreeMap::new();
+    for &[a, b, c] in &mesh.triangles {
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            *open.entry((from.min(to), from.max(to))).or_default() += if from < to { 1 } else { -1 };
+        }
+    }
+    // An edge of one face is followed the other way round by the fan.
+    let next: BTreeMap<u32, u32> = open
+        .into_iter()
+        .filter(|(_, count)| *count != 0)
+        .map(|((low, high), count)| if count > 0 { (high, low) } else { (low, high) })
+        .collect();
+    let mut left = next.clone();
+    while let Some((&start, _)) = left.iter().next() {
+        let mut rim = Vec::new();
+        let mut at = start;
+        while let Some(to) = left.remove(&at) {
+            rim.push([at, to]);
+            at = to;
+        }
+        let middle =
+            rim.iter().map(|edge| mesh.positions[edge[0] as usize]).sum::<DVec3>() / rim.len() as f64;
+        let centre = mesh.positions.len() as u32;
+        mesh.positions.push(middle);
+        mesh.triangles.extend(rim.iter().map(|&[from, to]| [from, to, centre]));
+    }
+    mesh
+}
+
+/// A ball with bumps of several sizes, of 2 · rings · segments triangles.
+fn bumpy(rings: u32, segments: u32) -> MeshData {
+    let mut positions = vec![DVec3::Y, -DVec3::Y];
+    for ring in 1..rings {
+        for segment in 0..segments {
+            let theta = f64::from(ring) / f64::from(rings) * std::f64::consts::PI;
+            let phi = f64::from(segment) / f64::from(segments) * std::f64::consts::TAU;
+            let ((sin, cos), (sin_phi, cos_phi)) = (libm::sincos(theta), libm::sincos(phi));
+            let wave = |n: f64| libm::sin(n * theta) * libm::cos((n * 0.8).round() * phi) * sin;
+            let radius = 1.0 + 0.1 * wave(5.0) + 0.02 * wave(37.0) + 0.004 * wave(211.0);
+            positions.push(DVec3::new(sin * cos_phi, cos, sin * sin_phi) * radius);
+        }
+    }
+    let at = |ring: u32, segment: u32| 2 + (ring - 1) * segments + segment % segments;
+    let mut triangles = Vec::new();
+    for s in 0..segments {
+        triangles.push([0, at(1, s + 1), at(1, s)]);
+        triangles.push([1, at(rings - 1, s), at(rings - 1, s + 1)]);
+        for ring in 1..rings - 1 {
+            let (a, b, c, d) = (at(ring, s), at(ring, s + 1), at(ring + 1, s), at(ring + 1, s + 1));
+            triangles.extend([[a, b, d], [a, d, c]]);
+        }
+    }
+    MeshData { positions, triangles, ..MeshData::default() }
+}
