@@ -8,7 +8,6 @@
 //!
 //! This is the isotropic model written a second time, on purpose: the furnace test of the model tests both.
 
-#[allow(dead_code, reason = "the models use what this script does not")]
 #[path = "src/compensation/grid.rs"]
 mod grid;
 

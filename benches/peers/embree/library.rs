@@ -42,7 +42,7 @@ type Query = unsafe extern "C" fn(*mut c_void, *mut RayHit, *const c_void);
 
 /// A mesh in a scene of Embree's.
 pub(crate) struct Scene {
-    library: Library,
+    embree: Library,
     device: *mut c_void,
     scene: *mut c_void,
     intersect: Query,
@@ -107,7 +107,7 @@ impl Scene {
             let start = super::now();
             commit(scene);
             let seconds = start.elapsed().as_secs_f64();
-            Ok((Self { library, device, scene, intersect, occluded }, seconds))
+            Ok((Self { embree: library, device, scene, intersect, occluded }, seconds))
         }
     }
 
@@ -132,7 +132,7 @@ impl Drop for Scene {
             // SAFETY: both handles come from this library and are released once, the scene first.
             unsafe {
                 let release: Symbol<'_, unsafe extern "C" fn(*mut c_void)> =
-                    self.library.get(release).expect("Embree has it");
+                    self.embree.get(release).expect("Embree has it");
                 release(handle);
             }
         }

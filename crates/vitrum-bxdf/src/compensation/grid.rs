@@ -14,10 +14,7 @@ pub(crate) const COSINES: usize = 40;
 pub(crate) const ROUGHNESSES: usize = 24;
 pub(crate) const RATIOS: usize = 32;
 
-/// Indices further apart than this have no compensation.
-pub(crate) const LARGEST_RATIO: f64 = 2.5;
-
-/// √(n² − 1) of the largest ratio.
+/// √(n² − 1) of the largest ratio of indices, 2.5.
 pub(crate) const LARGEST_Q: f64 = 2.291_287_847_477_92;
 
 /// The least roughness: below, surfaces are smooth.

@@ -3,7 +3,7 @@
 pub(crate) mod grid;
 
 use crate::{Ggx, Interface, Real};
-use grid::{COSINES, Cosines, LARGEST_RATIO, RATIOS, ROUGHNESSES, Side};
+use grid::{COSINES, Cosines, LARGEST_Q, RATIOS, ROUGHNESSES, Side};
 
 include!(concat!(env!("OUT_DIR"), "/compensation.rs"));
 
@@ -25,11 +25,12 @@ impl Compensation {
         let (down, up) = (interface.crossing(true), interface.crossing(false));
         let above_is_rarer = down.k > R::zero();
         let (into_denser, into_rarer) = if above_is_rarer { (down, up) } else { (up, down) };
-        if into_denser.eta.to_f64() > LARGEST_RATIO {
-            return None;
-        }
         let alpha = roughness.mean_alpha().to_f64();
         let q = into_denser.k.sqrt().to_f64();
+        // A ratio that is 2.5 in single precision is one that is 2.5.
+        if q > LARGEST_Q * (1.0 + 1e-6) {
+            return None;
+        }
         let (i, roughness_beyond) = split(grid::of_roughness(alpha), ROUGHNESSES);
         let (j, ratio_beyond) = split(grid::of_ratio(q, alpha), RATIOS);
         Some(Self {

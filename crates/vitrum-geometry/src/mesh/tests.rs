@@ -88,10 +88,10 @@ fn the_tree_finds_what_trying_every_triangle_finds() {
         // Four levels of scale in one mesh, and more triangles than fit into a few leaves.
         {
             let mut m = MeshData::default();
-            for (level, size) in [0.3, 1e-2, 1e-4, 1e-6].into_iter().enumerate() {
+            for (extent, size) in [(1.0, 0.3), (0.1, 1e-2), (1e-2, 1e-4), (1e-3, 1e-6)] {
                 let part = soup(&mut random, 400, size);
                 let base = m.positions.len() as u32;
-                m.positions.extend(part.positions.iter().map(|p| *p * 10.0_f64.powi(-(level as i32))));
+                m.positions.extend(part.positions.iter().map(|p| *p * extent));
                 m.triangles.extend(part.triangles.iter().map(|t| t.map(|corner| corner + base)));
             }
             m
