@@ -4,7 +4,7 @@ use crate::departure::Query;
 use crate::interaction::SurfaceInteraction;
 use crate::object::Object;
 use crate::shape::{Crossing, Sphere};
-use crate::wide::{Lanes, Portable, UnitFrame, Visitor, WideTree};
+use crate::wide::{Lanes, UnitFrame, Visitor, WideTree};
 use std::ops::ControlFlow;
 use vitrum_math::Bounds;
 
@@ -101,7 +101,7 @@ impl ObjectTree {
             objects[id as usize].closest(query, id, nearest, counters);
             ControlFlow::Continue(ray.box_limit(nearest.limit()))
         };
-        self.boxes.walk::<Portable>(&ray, limit, &mut InBlocks { tree: self, visit });
+        self.boxes.walk(&ray, limit, &mut InBlocks { tree: self, visit });
     }
 
     #[inline(never)]
@@ -113,7 +113,7 @@ impl ObjectTree {
             found = objects[id as usize].any(query, id, limit, counters);
             if found { ControlFlow::Break(()) } else { ControlFlow::Continue(box_limit) }
         };
-        self.boxes.walk::<Portable>(&ray, box_limit, &mut InBlocks { tree: self, visit });
+        self.boxes.walk(&ray, box_limit, &mut InBlocks { tree: self, visit });
         found
     }
 }

@@ -4,9 +4,7 @@ use super::MeshData;
 use super::triangle::{Sheared, TriangleBlock, meet};
 use crate::aggregate::{Counters, Hit, Nearest};
 use crate::departure::{Departure, Query};
-#[cfg(target_arch = "x86_64")]
-use crate::wide::Avx2;
-use crate::wide::{BLOCK, FrameRay, Isa, Lanes, Portable, UnitFrame, Visitor, WideTree};
+use crate::wide::{BLOCK, FrameRay, Lanes, UnitFrame, Visitor, WideTree};
 use std::ops::ControlFlow;
 use vitrum_math::{Bounds, DVec3, Ray, Vec3, gamma};
 
@@ -26,7 +24,6 @@ pub struct TriangleMesh {
     tree: WideTree,
     /// The triangles of the tree's blocks.
     blocks: Vec<TriangleBlock>,
-    isa: Isa,
 }
 
 /// Largest coordinate of a mesh, in its own units.
@@ -163,18 +160,7 @@ impl TriangleMesh {
         } else {
             vec![]
         };
-        Ok(Self {
-            frame,
-            bounds,
-            vertices,
-            triangles,
-            normals,
-            normal_triangles,
-            materials,
-            tree,
-            blocks,
-            isa: Isa::best(),
-        })
+        Ok(Self { frame, bounds, vertices, triangles, normals, normal_triangles, materials, tree, blocks })
     }
 
     /// Looks at the vertices alone: what comes before any arithmetic with them.
@@ -279,7 +265,7 @@ impl TriangleMesh {
     /// The same mesh, searched with the instructions of any processor.
     #[cfg(test)]
     pub(crate) fn with_portable_instructions(self) -> Self {
-        Self { isa: Isa::Portable, ..self }
+        Self { tree: self.tree.with_portable_instructions(), ..self }
     }
 
     /// The same as [`closest`](Self::closest) by trying every triangle in double precision: the oracle that the tree is
@@ -296,7 +282,7 @@ impl TriangleMesh {
         }
     }
 
-    /// Calls `visit` for the triangles that the ray may meet before the limit, with the instructions of the processor.
+    /// Calls `visit` for the triangles that the ray may meet before the limit.
     #[inline(always)]
     fn candidates(
         &self,
@@ -304,35 +290,8 @@ impl TriangleMesh {
         limit: f32,
         visit: impl FnMut(u32, &[DVec3; 3], f32) -> ControlFlow<(), f32>,
     ) {
-        match self.isa {
-            Isa::Portable => self.candidates_with::<Portable>(ray, limit, visit),
-            #[cfg(target_arch = "x86_64")]
-            #[allow(unsafe_code)]
-            // SAFETY: `Isa::Avx2` stands only where the processor was asked for these instructions.
-            Isa::Avx2 => unsafe { self.candidates_avx2(ray, limit, visit) },
-        }
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2,fma")]
-    fn candidates_avx2(
-        &self,
-        ray: &FrameRay,
-        limit: f32,
-        visit: impl FnMut(u32, &[DVec3; 3], f32) -> ControlFlow<(), f32>,
-    ) {
-        self.candidates_with::<Avx2>(ray, limit, visit);
-    }
-
-    #[inline(always)]
-    fn candidates_with<L: Lanes>(
-        &self,
-        ray: &FrameRay,
-        limit: f32,
-        mut visit: impl FnMut(u32, &[DVec3; 3], f32) -> ControlFlow<(), f32>,
-    ) {
         let sheared = Sheared::new(ray.origin, ray.direction);
-        self.tree.walk::<L>(ray, limit, &mut Candidates { blocks: &self.blocks, sheared, visit: &mut visit });
+        self.tree.walk(ray, limit, &mut Candidates { blocks: &self.blocks, sheared, visit });
     }
 
     /// Tests one triangle in double precision and asks whether it counts.

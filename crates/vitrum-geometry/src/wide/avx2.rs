@@ -5,15 +5,22 @@
 #![allow(unsafe_code)]
 
 use super::lanes::Lanes;
+use super::{FrameRay, Visitor, WideTree};
 use std::arch::x86_64::{
     __m256, _CMP_LE_OQ, _mm256_add_ps, _mm256_andnot_ps, _mm256_cmp_ps, _mm256_fmadd_ps, _mm256_loadu_ps,
     _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_set1_ps, _mm256_storeu_ps,
     _mm256_sub_ps,
 };
 
+/// Walks a tree with these instructions.
+#[target_feature(enable = "avx2,fma")]
+pub(super) fn walk(tree: &WideTree, ray: &FrameRay, limit: f32, visitor: &mut impl Visitor) {
+    tree.walk_in::<Avx2>(ray, limit, visitor);
+}
+
 /// A register of eight.
 #[derive(Clone, Copy)]
-pub(crate) struct Avx2(__m256);
+struct Avx2(__m256);
 
 impl Lanes for Avx2 {
     #[inline(always)]

@@ -5,7 +5,7 @@
 //! Compressed Wide BVHs, 2017, section 3.1): C(n, i) is the least cost of the subtree n laid out as a forest of at most i
 //! wide subtrees.
 
-use super::{BLOCK, Child, Node, PAD, WIDTH, WideTree};
+use super::{BLOCK, Child, Isa, Node, PAD, WIDTH, WideTree};
 use obvhs::bvh2::Bvh2;
 use vitrum_math::Vec3;
 
@@ -85,7 +85,7 @@ impl Collapse<'_> {
 
     /// From the root down.
     fn lay_out(&self) -> WideTree {
-        let mut tree = WideTree { nodes: vec![Node::EMPTY], blocks: Vec::new(), depth: 0 };
+        let mut tree = WideTree { nodes: vec![Node::EMPTY], blocks: Vec::new(), depth: 0, isa: Isa::best() };
         // Binary subtrees that wait to become wide nodes: where, and how deep.
         let mut open = vec![(0usize, 0usize, 1usize)];
         while let Some((binary, wide, depth)) = open.pop() {

@@ -1,7 +1,7 @@
 //! The unit frame that a tree lives in, and rays there.
 //!
-//! v' = (v − centre) · 2^k with the largest extent in [0.5, 1). A ray is brought into it in double precision and advanced to
-//! the bounds before it is rounded to single precision, so that neither the size of the scene nor its distance from the
+//! v' = (v − centre) · 2^k with the largest extent in [0.5, 1). A ray is brought into it in double precision and, from afar,
+//! advanced to the bounds before it is rounded to single precision, so that neither the size of the scene nor its distance from the
 //! origin costs accuracy.
 
 use super::PAD;

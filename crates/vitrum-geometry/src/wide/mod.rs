@@ -16,8 +16,6 @@ mod collapse;
 mod frame;
 mod lanes;
 
-#[cfg(target_arch = "x86_64")]
-pub(crate) use avx2::Avx2;
 pub(crate) use frame::{FrameRay, UnitFrame};
 pub(crate) use lanes::{Lanes, Portable};
 
@@ -41,9 +39,9 @@ pub(crate) const BLOCK: usize = 8;
 /// the heap.
 const SHALLOW: usize = 9;
 
-/// The instructions that queries are compiled for.
+/// The instructions that a tree is walked with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Isa {
+enum Isa {
     /// Any processor.
     Portable,
     /// AVX2 and FMA.
@@ -53,7 +51,7 @@ pub(crate) enum Isa {
 
 impl Isa {
     /// The widest that this processor has.
-    pub(crate) fn best() -> Self {
+    fn best() -> Self {
         #[cfg(target_arch = "x86_64")]
         if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
             return Self::Avx2;
@@ -130,6 +128,7 @@ pub(crate) struct WideTree {
     /// The items of the leaves; [`WideTree::NONE`] where a block is not full.
     blocks: Vec<[u32; BLOCK]>,
     depth: usize,
+    isa: Isa,
 }
 
 struct Item(Aabb);
@@ -180,7 +179,7 @@ impl WideTree {
         let items: Vec<Item> =
             boxes.map(|(min, max)| Item(Aabb { min: min.into(), max: max.into() })).collect();
         if items.is_empty() {
-            return Self { nodes: vec![Node::EMPTY], blocks: Vec::new(), depth: 1 };
+            return Self { nodes: vec![Node::EMPTY], blocks: Vec::new(), depth: 1, isa: Isa::best() };
         }
         let one_item_a_leaf = BvhBuildParams { max_prims_per_leaf: 1, ..BvhBuildParams::medium_build() };
         let binary = obvhs::bvh2::builder::build_bvh2(&items, one_item_a_leaf, &mut Duration::default());
@@ -202,9 +201,27 @@ impl WideTree {
         std::mem::take(&mut self.blocks)
     }
 
-    /// Shows `visitor` the blocks whose boxes the ray meets before the limit, near boxes first.
+    /// The same tree, walked with the instructions of any processor.
+    #[cfg(test)]
+    pub(crate) fn with_portable_instructions(self) -> Self {
+        Self { isa: Isa::Portable, ..self }
+    }
+
+    /// Shows `visitor` the blocks whose boxes the ray meets before the limit, near boxes first, with the instructions of the
+    /// processor.
     #[inline(always)]
-    pub(crate) fn walk<L: Lanes>(&self, ray: &FrameRay, limit: f32, visitor: &mut impl Visitor) {
+    pub(crate) fn walk(&self, ray: &FrameRay, limit: f32, visitor: &mut impl Visitor) {
+        match self.isa {
+            Isa::Portable => self.walk_in::<Portable>(ray, limit, visitor),
+            #[cfg(target_arch = "x86_64")]
+            #[allow(unsafe_code)]
+            // SAFETY: `Isa::Avx2` stands only where the processor was asked for these instructions.
+            Isa::Avx2 => unsafe { avx2::walk(self, ray, limit, visitor) },
+        }
+    }
+
+    #[inline(always)]
+    fn walk_in<L: Lanes>(&self, ray: &FrameRay, limit: f32, visitor: &mut impl Visitor) {
         // Not filled with anything: that would take longer than a ray that misses.
         if self.depth <= SHALLOW {
             let mut stack = [MaybeUninit::uninit(); SHALLOW * (WIDTH - 1) + 1];
