@@ -4,7 +4,7 @@ use crate::departure::Query;
 use crate::interaction::SurfaceInteraction;
 use crate::object::Object;
 use crate::shape::{Crossing, Sphere};
-use crate::wide::{Lanes, UnitFrame, Visitor, WideTree};
+use crate::wide::{FrameRay, Lanes, NONE, Numbers, Part, Processor, Task, UnitFrame, Visitor, WideTree};
 use std::ops::ControlFlow;
 use vitrum_math::Bounds;
 
@@ -87,48 +87,84 @@ pub struct Aggregate {
 #[derive(Clone, Debug)]
 struct ObjectTree {
     frame: UnitFrame,
-    boxes: WideTree,
+    boxes: WideTree<Numbers>,
     /// The object of each box.
     objects: Vec<u32>,
 }
 
-impl ObjectTree {
-    #[inline(never)]
-    fn closest(&self, objects: &[Object], query: &Query, nearest: &mut Nearest, counters: &mut Counters) {
-        let Some(ray) = self.frame.enter(&query.ray, nearest.limit()) else { return };
-        let limit = ray.box_limit(nearest.limit());
-        let visit = |id: u32| {
-            objects[id as usize].closest(query, id, nearest, counters);
-            ControlFlow::Continue(ray.box_limit(nearest.limit()))
-        };
-        self.boxes.walk(&ray, limit, &mut InBlocks { tree: self, visit });
-    }
-
-    #[inline(never)]
-    fn any(&self, objects: &[Object], query: &Query, limit: f64, counters: &mut Counters) -> bool {
-        let Some(ray) = self.frame.enter(&query.ray, limit) else { return false };
-        let box_limit = ray.box_limit(limit);
-        let mut found = false;
-        let visit = |id: u32| {
-            found = objects[id as usize].any(query, id, limit, counters);
-            if found { ControlFlow::Break(()) } else { ControlFlow::Continue(box_limit) }
-        };
-        self.boxes.walk(&ray, box_limit, &mut InBlocks { tree: self, visit });
-        found
-    }
+/// Asks the objects whose boxes a ray meets, near boxes first, for the first hit.
+struct ClosestObject<'a> {
+    tree: &'a ObjectTree,
+    objects: &'a [Object],
+    query: &'a Query,
+    nearest: &'a mut Nearest,
+    counters: &'a mut Counters,
 }
 
-/// Asks the objects of a block one by one.
-struct InBlocks<'t, F> {
-    tree: &'t ObjectTree,
-    visit: F,
-}
+impl Task for ClosestObject<'_> {
+    type Output = ();
 
-impl<F: FnMut(u32) -> ControlFlow<(), f32>> Visitor for InBlocks<'_, F> {
     #[inline(always)]
-    fn visit<L: Lanes>(&mut self, block: usize, mut limit: f32) -> ControlFlow<(), f32> {
-        for &item in self.tree.boxes.blocks()[block].iter().take_while(|item| **item != WideTree::NONE) {
-            limit = (self.visit)(self.tree.objects[item as usize])?;
+    fn run<P: Processor>(&mut self) {
+        let limit = self.nearest.limit();
+        let Some(ray) = self.tree.frame.enter(&self.query.ray, limit) else { return };
+        self.tree.boxes.walk::<P, _>(&ray, ray.scale.box_limit(limit), &mut Among { task: self, ray });
+    }
+}
+
+/// Asks the objects whose boxes a ray meets for any hit nearer than a limit.
+struct AnyObject<'a> {
+    tree: &'a ObjectTree,
+    objects: &'a [Object],
+    query: &'a Query,
+    limit: f64,
+    found: bool,
+    counters: &'a mut Counters,
+}
+
+impl Task for AnyObject<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<P: Processor>(&mut self) -> bool {
+        let Some(ray) = self.tree.frame.enter(&self.query.ray, self.limit) else { return false };
+        self.tree.boxes.walk::<P, _>(&ray, ray.scale.box_limit(self.limit), &mut Among { task: self, ray });
+        self.found
+    }
+}
+
+/// A task on its way through the tree.
+struct Among<'t, T> {
+    task: &'t mut T,
+    ray: FrameRay,
+}
+
+impl Visitor<Numbers> for Among<'_, ClosestObject<'_>> {
+    const ORDERED: bool = true;
+
+    #[inline(always)]
+    fn visit<P: Processor>(&mut self, part: Part<'_, Numbers>, _: f32) -> ControlFlow<(), f32> {
+        let task = &mut *self.task;
+        for &item in part.block[part.from..][..P::Leaf::COUNT].iter().take_while(|item| **item != NONE) {
+            let id = task.tree.objects[item as usize];
+            task.objects[id as usize].closest(task.query, id, task.nearest, task.counters);
+        }
+        ControlFlow::Continue(self.ray.scale.box_limit(task.nearest.limit()))
+    }
+}
+
+impl Visitor<Numbers> for Among<'_, AnyObject<'_>> {
+    const ORDERED: bool = false;
+
+    #[inline(always)]
+    fn visit<P: Processor>(&mut self, part: Part<'_, Numbers>, limit: f32) -> ControlFlow<(), f32> {
+        let task = &mut *self.task;
+        for &item in part.block[part.from..][..P::Leaf::COUNT].iter().take_while(|item| **item != NONE) {
+            let id = task.tree.objects[item as usize];
+            if task.objects[id as usize].any(task.query, id, task.limit, task.counters) {
+                task.found = true;
+                return ControlFlow::Break(());
+            }
         }
         ControlFlow::Continue(limit)
     }
@@ -195,7 +231,8 @@ impl Aggregate {
             self.objects[id as usize].closest(query, id, &mut nearest, counters);
         }
         if let Some(tree) = &self.tree {
-            tree.closest(&self.objects, query, &mut nearest, counters);
+            let (objects, nearest) = (&self.objects[..], &mut nearest);
+            tree.boxes.run(&mut ClosestObject { tree, objects, query, nearest, counters });
         }
         nearest.found()
     }
@@ -221,7 +258,9 @@ impl Aggregate {
                 return true;
             }
         }
-        self.tree.as_ref().is_some_and(|tree| tree.any(&self.objects, query, limit, counters))
+        let Some(tree) = &self.tree else { return false };
+        let objects = &self.objects[..];
+        tree.boxes.run(&mut AnyObject { tree, objects, query, limit, found: false, counters })
     }
 
     /// The point of a hit that [`closest`](Self::closest) found for the same query.

@@ -5,7 +5,7 @@ use crate::departure::Query;
 use crate::interaction::SurfaceInteraction;
 use crate::mesh::{MeshPoint, TriangleMesh};
 use crate::shape::{Crossing, Plane, Rectangle, Shape, ShapeError, Sphere, SurfacePoint};
-use vitrum_math::{Bounds, Ray, Transform, unit};
+use vitrum_math::{Bounds, Transform, unit};
 
 /// A shape with its transform and orientation.
 #[derive(Clone, Debug)]
@@ -99,18 +99,10 @@ impl Object {
         Some(self.transform.as_ref().map_or(own, |t| t.world_bounds(&own)))
     }
 
-    /// Hands on the ray in the frame of the shape.
-    #[inline]
-    fn in_own_frame<T>(&self, ray: &Ray, then: impl FnOnce(&Ray) -> T) -> T {
-        match &self.transform {
-            None => then(ray),
-            Some(t) => then(&Ray::new(t.object_point(ray.origin), t.object_vector(ray.direction))),
-        }
-    }
-
     /// The first crossing of an analytic shape that counts; at infinity when there is none.
     #[inline]
-    fn first(&self, ray: &Ray, query: &Query, id: u32) -> Crossing {
+    fn first(&self, query: &Query, id: u32) -> Crossing {
+        let ray = &self.transform.as_ref().map_or(query.ray, |t| t.object_ray(&query.ray));
         let leaving = query.face_left(id);
         let crossings = match &self.shape {
             Shape::Sphere(s) => s.crossings(ray, leaving),
@@ -127,25 +119,32 @@ impl Object {
     /// Offers the first hit that counts.
     #[inline]
     pub(crate) fn closest(&self, query: &Query, id: u32, nearest: &mut Nearest, counters: &mut Counters) {
-        self.in_own_frame(&query.ray, |ray| {
-            if let Shape::Mesh(mesh) = &self.shape {
-                mesh.closest(ray, query, id, nearest, counters);
-            } else {
-                let Crossing { t, face } = self.first(ray, query, id);
-                if t <= nearest.limit() && t < f64::INFINITY {
-                    nearest.offer(Hit { t, object: id, face, barycentrics: [0.0; 2] });
-                }
+        match (&self.shape, &self.transform) {
+            (Shape::Mesh(mesh), None) => mesh.closest(&query.ray, query, id, nearest, counters),
+            (Shape::Mesh(mesh), Some(t)) => {
+                mesh.closest(&t.object_ray(&query.ray), query, id, nearest, counters);
             }
-        });
+            _ => self.closest_crossing(query, id, nearest),
+        }
+    }
+
+    /// The same for analytic shapes.
+    #[inline(never)]
+    fn closest_crossing(&self, query: &Query, id: u32, nearest: &mut Nearest) {
+        let Crossing { t, face } = self.first(query, id);
+        if t <= nearest.limit() && t < f64::INFINITY {
+            nearest.offer(Hit { t, object: id, face, barycentrics: [0.0; 2] });
+        }
     }
 
     /// True when something of it is hit nearer than `limit`.
     #[inline]
     pub(crate) fn any(&self, query: &Query, id: u32, limit: f64, counters: &mut Counters) -> bool {
-        self.in_own_frame(&query.ray, |ray| match &self.shape {
-            Shape::Mesh(mesh) => mesh.any(ray, query, id, limit, counters),
-            _ => self.first(ray, query, id).t < limit,
-        })
+        match (&self.shape, &self.transform) {
+            (Shape::Mesh(mesh), None) => mesh.any(&query.ray, query, id, limit, counters),
+            (Shape::Mesh(mesh), Some(t)) => mesh.any(&t.object_ray(&query.ray), query, id, limit, counters),
+            _ => self.first(query, id).t < limit,
+        }
     }
 
     /// The point of a hit.
@@ -153,21 +152,28 @@ impl Object {
     pub(crate) fn interaction(&self, query: &Query, hit: &Hit) -> SurfaceInteraction {
         let mut shading = None;
         let mut error = 0.0;
-        let SurfacePoint { mut point, normal: mut ng } =
-            self.in_own_frame(&query.ray, |ray| match &self.shape {
-                Shape::Sphere(s) => s.surface_point(ray, hit.t),
-                Shape::Plane(s) => s.surface_point(ray, hit.t),
-                Shape::Disk(s) => s.surface_point(ray, hit.t),
-                Shape::Rectangle(s) => s.surface_point(ray, hit.t),
-                Shape::Cuboid(s) => s.surface_point(ray, hit.t, hit.face),
-                Shape::Cylinder(s) => s.surface_point(ray, hit.t, hit.face),
-                Shape::Mesh(mesh) => {
-                    let p = mesh.point(hit.face, hit.barycentrics);
-                    error = self.origin_error(mesh, &p);
-                    shading = mesh.is_smooth().then_some(p.ns);
-                    SurfacePoint { point: p.point, normal: p.ng }
-                }
-            });
+        let moved;
+        let ray = match &self.transform {
+            None => &query.ray,
+            Some(t) => {
+                moved = t.object_ray(&query.ray);
+                &moved
+            }
+        };
+        let SurfacePoint { mut point, normal: mut ng } = match &self.shape {
+            Shape::Sphere(s) => s.surface_point(ray, hit.t),
+            Shape::Plane(s) => s.surface_point(ray, hit.t),
+            Shape::Disk(s) => s.surface_point(ray, hit.t),
+            Shape::Rectangle(s) => s.surface_point(ray, hit.t),
+            Shape::Cuboid(s) => s.surface_point(ray, hit.t, hit.face),
+            Shape::Cylinder(s) => s.surface_point(ray, hit.t, hit.face),
+            Shape::Mesh(mesh) => {
+                let p = mesh.point(hit.face, hit.barycentrics);
+                error = self.origin_error(mesh, &p);
+                shading = mesh.is_smooth().then_some(p.ns);
+                SurfacePoint { point: p.point, normal: p.ng }
+            }
+        };
         if let Some(t) = &self.transform {
             point = t.world_point(point);
             ng = unit(t.world_normal(ng));

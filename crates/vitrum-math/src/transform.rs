@@ -1,6 +1,6 @@
 //! Affine transforms with their inverse.
 
-use crate::{Bounds, DVec3, gamma};
+use crate::{Bounds, DVec3, Ray, gamma};
 
 /// An affine map `world = linear · object + translation` and its inverse. Rows and dot products instead of a matrix
 /// type, so that the order of every addition stands in this file.
@@ -141,6 +141,12 @@ impl Transform {
     #[inline]
     pub fn world_normal(&self, n: DVec3) -> DVec3 {
         self.inverse.transposed(n)
+    }
+
+    /// A ray of the world in object space; `t` stays the same number.
+    #[inline]
+    pub fn object_ray(&self, ray: &Ray) -> Ray {
+        Ray::new(self.object_point(ray.origin), self.object_vector(ray.direction))
     }
 
     /// A point of the world in the object's frame.

@@ -3,6 +3,7 @@
 mod data;
 mod health;
 mod normals;
+mod search;
 mod triangle;
 mod triangle_mesh;
 

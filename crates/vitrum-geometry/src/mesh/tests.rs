@@ -6,6 +6,7 @@ use crate::departure::Query;
 use crate::interaction::Side;
 use crate::object::Object;
 use crate::shape::Shape;
+use crate::wide::Isa;
 use std::sync::Arc;
 use vitrum_math::{DVec3, Ray, Transform, unit};
 
@@ -67,8 +68,8 @@ fn closest(mesh: &TriangleMesh, ray: &Ray) -> Option<Hit> {
     nearest.found()
 }
 
-/// The tree finds exactly what trying every triangle finds: distance, face and weights, to the last bit, with the
-/// instructions of this processor and with those of any.
+/// The tree finds exactly what trying every triangle finds: distance, face and weights, to the last bit, with
+/// every kind of instructions that this processor has.
 #[test]
 fn the_tree_finds_what_trying_every_triangle_finds() {
     let mut random = Random(1);
@@ -122,7 +123,7 @@ fn the_tree_finds_what_trying_every_triangle_finds() {
     }
     for (number, data) in meshes.iter().enumerate() {
         let mesh = TriangleMesh::new(data).expect("valid mesh");
-        let portable = mesh.clone().with_portable_instructions();
+        let walked: Vec<_> = Isa::all().iter().map(|isa| mesh.clone().with_instructions(*isa)).collect();
         let (centre, size) = (mesh.bounds().centre(), mesh.bounds().extent().max_element());
         let mut hits = 0;
         for i in 0..3000 {
@@ -136,13 +137,16 @@ fn the_tree_finds_what_trying_every_triangle_finds() {
             let ray = Ray::new(origin, (target - origin).normalize());
             let mut oracle = Nearest::default();
             mesh.closest_of_all(&ray, &Query::new(ray), &mut oracle);
-            let found = closest(&mesh, &ray);
-            assert_eq!(found, oracle.found(), "mesh {number}, {ray:?}");
-            let any = mesh.any(&ray, &Query::new(ray), 0, f64::INFINITY, &mut Counters::default());
-            assert_eq!(any, found.is_some());
-            assert_eq!(closest(&portable, &ray), found, "on any processor: mesh {number}, {ray:?}");
-            let any = portable.any(&ray, &Query::new(ray), 0, f64::INFINITY, &mut Counters::default());
-            assert_eq!(any, found.is_some());
+            let found = oracle.found();
+            for (mesh, isa) in walked.iter().zip(Isa::all()) {
+                assert_eq!(closest(mesh, &ray), found, "{isa:?}: mesh {number}, {ray:?}");
+                let limits = [f64::INFINITY, found.map_or(1.0, |hit| hit.t)];
+                for limit in limits {
+                    let any = mesh.any(&ray, &Query::new(ray), 0, limit, &mut Counters::default());
+                    let expected = found.is_some_and(|hit| hit.t < limit);
+                    assert_eq!(any, expected, "{isa:?}, to {limit}: mesh {number}, {ray:?}");
+                }
+            }
             hits += u32::from(found.is_some());
         }
         assert!(hits > 20, "mesh {number}: {hits} hits");

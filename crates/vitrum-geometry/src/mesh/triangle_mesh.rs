@@ -1,17 +1,19 @@
 //! A triangle mesh in the form that rays are traced against.
 
 use super::MeshData;
-use super::triangle::{Sheared, TriangleBlock, meet};
+use super::search::{AnyHit, ClosestHit};
+use super::triangle::{TriangleBlock, meet};
 use crate::aggregate::{Counters, Hit, Nearest};
 use crate::departure::{Departure, Query};
-use crate::wide::{BLOCK, FrameRay, Lanes, UnitFrame, Visitor, WideTree};
-use std::ops::ControlFlow;
+#[cfg(test)]
+use crate::wide::Isa;
+use crate::wide::{UnitFrame, WideTree};
 use vitrum_math::{Bounds, DVec3, Ray, Vec3, gamma};
 
 /// Triangles in a unit frame of their own (single precision), with the tree that finds them.
 #[derive(Clone, Debug)]
 pub struct TriangleMesh {
-    frame: UnitFrame,
+    pub(super) frame: UnitFrame,
     bounds: Bounds,
     /// Corner positions in the unit frame.
     vertices: Vec<Vec3>,
@@ -21,9 +23,7 @@ pub struct TriangleMesh {
     normal_triangles: Vec<[u32; 3]>,
     /// Number of the material of each triangle; empty when all have the same.
     materials: Vec<u32>,
-    tree: WideTree,
-    /// The triangles of the tree's blocks.
-    blocks: Vec<TriangleBlock>,
+    pub(super) tree: WideTree<TriangleBlock>,
 }
 
 /// Largest coordinate of a mesh, in its own units.
@@ -65,6 +65,13 @@ pub enum MeshError {
     TooLarge(usize),
 }
 
+/// A triangle that may be hit.
+pub(super) struct Candidate<'c> {
+    pub(super) face: u32,
+    /// In the unit frame.
+    pub(super) corners: &'c [DVec3; 3],
+}
+
 /// A point of a mesh in its own frame.
 pub(crate) struct MeshPoint {
     pub(crate) point: DVec3,
@@ -74,33 +81,6 @@ pub(crate) struct MeshPoint {
     pub(crate) ns: DVec3,
     /// Bound on the error of `point` per coordinate, in the units of the mesh.
     pub(crate) error: f64,
-}
-
-/// Looks for triangles that the ray may meet.
-struct Candidates<'m, F> {
-    blocks: &'m [TriangleBlock],
-    sheared: Sheared,
-    visit: F,
-}
-
-impl<F> Visitor for Candidates<'_, F>
-where
-    F: FnMut(u32, &[DVec3; 3], f32) -> ControlFlow<(), f32>,
-{
-    #[inline(always)]
-    fn visit<L: Lanes>(&mut self, block: usize, mut limit: f32) -> ControlFlow<(), f32> {
-        let block = &self.blocks[block];
-        let mut candidates = self.sheared.may_meet::<L>(block, limit);
-        while candidates != 0 {
-            let lane = candidates.trailing_zeros() as usize & (BLOCK - 1);
-            candidates &= candidates - 1;
-            let face = block.faces[lane];
-            if face != WideTree::NONE {
-                limit = (self.visit)(face, &block.corners(lane), limit)?;
-            }
-        }
-        ControlFlow::Continue(limit)
-    }
 }
 
 impl TriangleMesh {
@@ -147,20 +127,17 @@ impl TriangleMesh {
             vec![]
         };
         let corners = |t: &[u32; 3]| t.map(|i| vertices[i as usize]);
-        let mut tree = WideTree::build(triangles.iter().map(|t| {
+        let tree = WideTree::build(triangles.iter().map(|t| {
             let [a, b, c] = corners(t);
             (a.min(b).min(c), a.max(b).max(c))
         }));
-        let blocks = tree.take_blocks().into_iter();
-        let blocks = blocks
-            .map(|faces| TriangleBlock::new(faces, |face| corners(&triangles[face as usize])))
-            .collect();
+        let tree = tree.map(|faces| TriangleBlock::new(faces, |face| corners(&triangles[face as usize])));
         let materials = if data.materials.len() == data.triangles.len() {
             kept.iter().map(|&i| data.materials[i]).collect()
         } else {
             vec![]
         };
-        Ok(Self { frame, bounds, vertices, triangles, normals, normal_triangles, materials, tree, blocks })
+        Ok(Self { frame, bounds, vertices, triangles, normals, normal_triangles, materials, tree })
     }
 
     /// Looks at the vertices alone: what comes before any arithmetic with them.
@@ -208,7 +185,6 @@ impl TriangleMesh {
             + size_of_val(&*self.normal_triangles)
             + size_of_val(&*self.materials)
             + self.tree.memory()
-            + size_of_val(&*self.blocks)
     }
 
     #[inline]
@@ -217,7 +193,7 @@ impl TriangleMesh {
     }
 
     /// Offers the first triangle that counts, if it is nearer than what was found before.
-    #[inline(never)]
+    #[inline]
     pub(crate) fn closest(
         &self,
         ray: &Ray,
@@ -226,20 +202,11 @@ impl TriangleMesh {
         nearest: &mut Nearest,
         counters: &mut Counters,
     ) {
-        let Some(ray) = self.frame.enter(ray, nearest.limit()) else { return };
-        let limit = ray.box_limit(nearest.limit());
-        self.candidates(&ray, limit, |face, corners, limit| {
-            if let Some(hit) = self.settle(&ray, query, object, face, corners, counters)
-                && nearest.offer(hit)
-            {
-                return ControlFlow::Continue(ray.box_limit(nearest.limit()));
-            }
-            ControlFlow::Continue(limit)
-        });
+        self.tree.run(&mut ClosestHit { mesh: self, ray, query, object, nearest, counters });
     }
 
     /// True when some triangle counts and lies nearer than `limit`.
-    #[inline(never)]
+    #[inline]
     pub(crate) fn any(
         &self,
         ray: &Ray,
@@ -248,76 +215,57 @@ impl TriangleMesh {
         limit: f64,
         counters: &mut Counters,
     ) -> bool {
-        let Some(ray) = self.frame.enter(ray, limit) else { return false };
-        let mut found = false;
-        self.candidates(&ray, ray.box_limit(limit), |face, corners, box_limit| {
-            match self.settle(&ray, query, object, face, corners, counters) {
-                Some(hit) if hit.t < limit => {
-                    found = true;
-                    ControlFlow::Break(())
-                }
-                _ => ControlFlow::Continue(box_limit),
-            }
-        });
-        found
+        self.tree.run(&mut AnyHit { mesh: self, ray, query, object, limit, counters })
     }
 
-    /// The same mesh, searched with the instructions of any processor.
+    /// The same mesh, searched with these instructions.
     #[cfg(test)]
-    pub(crate) fn with_portable_instructions(self) -> Self {
-        Self { tree: self.tree.with_portable_instructions(), ..self }
+    pub(crate) fn with_instructions(self, isa: Isa) -> Self {
+        Self { tree: self.tree.with_instructions(isa), ..self }
     }
 
     /// The same as [`closest`](Self::closest) by trying every triangle in double precision: the oracle that the tree is
     /// tested against.
     #[cfg(test)]
     pub(crate) fn closest_of_all(&self, ray: &Ray, query: &Query, nearest: &mut Nearest) {
-        let Some(ray) = self.frame.enter(ray, f64::INFINITY) else { return };
+        let Some(framed) = self.frame.enter(ray, f64::INFINITY) else { return };
+        let exact = self.frame.exact(ray, framed.scale);
         for face in 0..self.triangles.len() as u32 {
             let corners = self.corners(face).map(|c| c.as_dvec3());
-            let hit = self.settle(&ray, query, 0, face, &corners, &mut Counters::default());
+            let candidate = Candidate { face, corners: &corners };
+            let to_world = |t| framed.scale.outward(t);
+            let hit = self.settle(&exact, to_world, query, 0, &candidate, &mut Counters::default());
             if let Some(hit) = hit {
                 nearest.offer(hit);
             }
         }
     }
 
-    /// Calls `visit` for the triangles that the ray may meet before the limit.
+    /// Tests one triangle in double precision and asks whether it counts. `ray` is exact, in the unit frame; `outward` takes
+    /// its `t` to that of the query.
     #[inline(always)]
-    fn candidates(
+    pub(super) fn settle(
         &self,
-        ray: &FrameRay,
-        limit: f32,
-        visit: impl FnMut(u32, &[DVec3; 3], f32) -> ControlFlow<(), f32>,
-    ) {
-        let sheared = Sheared::new(ray.origin, ray.direction);
-        self.tree.walk(ray, limit, &mut Candidates { blocks: &self.blocks, sheared, visit });
-    }
-
-    /// Tests one triangle in double precision and asks whether it counts.
-    #[inline]
-    fn settle(
-        &self,
-        ray: &FrameRay,
+        ray: &Ray,
+        outward: impl Fn(f64) -> f64,
         query: &Query,
         object: u32,
-        face: u32,
-        corners: &[DVec3; 3],
+        &Candidate { face, corners }: &Candidate<'_>,
         counters: &mut Counters,
     ) -> Option<Hit> {
         let departed = query.departed_from(object);
         if departed.is_some_and(|d| d.face == face) {
             return None;
         }
-        let met = meet(&ray.exact, corners)?;
-        let mut t = met.t / ray.t_scale;
+        let met = meet(ray, corners)?;
+        let mut t = outward(met.t);
         if let Some(departed) = departed {
             // A neighbour within the rounding error of the origin. Whether it seems to lie before or behind says nothing.
             let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-            let along = ray.exact.direction.dot(normal);
+            let along = ray.direction.dot(normal);
             let distance = (met.t * along).abs() / normal.dot(normal).sqrt();
             if distance <= departed.error {
-                if !self.goes_through_neighbour(departed, ray.exact.origin, corners, along < 0.0) {
+                if !self.goes_through_neighbour(departed, ray.origin, corners, along < 0.0) {
                     counters.neighbours_ignored += 1;
                     return None;
                 }
@@ -332,6 +280,7 @@ impl TriangleMesh {
     /// Where the two faces meet like those of a convex solid, only a ray that is inside can cross the neighbour, on its way
     /// out; where they meet like the walls of a corner, only one that is outside, on its way in. Anything else is the rounding
     /// of the origin.
+    #[inline(always)]
     fn goes_through_neighbour(
         &self,
         left: &Departure,

@@ -1,42 +1,54 @@
 //! [`Lanes`] for processors with AVX2 and FMA.
 //!
 //! Values of this type are made only inside functions that are compiled for these instructions, and these are called only
-//! after the processor has been asked ([`super::Isa::best`]): that is what makes every block below sound.
+//! after the processor has been asked ([`super::isa::Isa::best`]): that is what makes every block below sound.
 #![allow(unsafe_code)]
 
-use super::lanes::Lanes;
-use super::{FrameRay, Visitor, WideTree};
+use super::isa::Task;
+use super::lanes::{Lanes, Processor};
 use std::arch::x86_64::{
-    __m256, _CMP_LE_OQ, _mm256_add_ps, _mm256_andnot_ps, _mm256_cmp_ps, _mm256_fmadd_ps, _mm256_loadu_ps,
-    _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_set1_ps, _mm256_storeu_ps,
-    _mm256_sub_ps,
+    __m256, _CMP_LE_OQ, _mm256_add_ps, _mm256_andnot_ps, _mm256_castsi256_ps, _mm256_cmp_ps,
+    _mm256_cmpeq_epi32, _mm256_div_ps, _mm256_fmadd_ps, _mm256_fmsub_ps, _mm256_fnmadd_ps, _mm256_loadu_ps,
+    _mm256_loadu_si256, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_set1_epi32,
+    _mm256_set1_ps, _mm256_storeu_ps, _mm256_sub_ps,
 };
 
-/// Walks a tree with these instructions.
+/// Does the work with these instructions.
 #[target_feature(enable = "avx2,fma")]
-pub(super) fn walk(tree: &WideTree, ray: &FrameRay, limit: f32, visitor: &mut impl Visitor) {
-    tree.walk_in::<Avx2>(ray, limit, visitor);
+pub(super) fn run<T: Task>(task: &mut T) -> T::Output {
+    task.run::<Avx2>()
+}
+
+struct Avx2;
+
+impl Processor for Avx2 {
+    type Node = Eight;
+    type Leaf = Eight;
 }
 
 /// A register of eight.
 #[derive(Clone, Copy)]
-struct Avx2(__m256);
+pub(super) struct Eight(__m256);
 
-impl Lanes for Avx2 {
+impl Lanes for Eight {
+    const COUNT: usize = 8;
+
     #[inline(always)]
     fn splat(x: f32) -> Self {
         // SAFETY: the processor has AVX (see the head of this file).
         Self(unsafe { _mm256_set1_ps(x) })
     }
     #[inline(always)]
-    fn load(x: &[f32; 8]) -> Self {
+    fn load(from: &[f32]) -> Self {
+        let eight: &[f32; 8] = from.first_chunk().expect("eight numbers");
         // SAFETY: the processor has AVX, and eight numbers stand at this address.
-        Self(unsafe { _mm256_loadu_ps(x.as_ptr()) })
+        Self(unsafe { _mm256_loadu_ps(eight.as_ptr()) })
     }
     #[inline(always)]
-    fn store(self, to: &mut [f32; 8]) {
+    fn store(self, to: &mut [f32]) {
+        let eight: &mut [f32; 8] = to.first_chunk_mut().expect("room for eight");
         // SAFETY: the processor has AVX, and there is room for eight numbers at this address.
-        unsafe { _mm256_storeu_ps(to.as_mut_ptr(), self.0) };
+        unsafe { _mm256_storeu_ps(eight.as_mut_ptr(), self.0) };
     }
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -54,9 +66,24 @@ impl Lanes for Avx2 {
         Self(unsafe { _mm256_mul_ps(self.0, other.0) })
     }
     #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        // SAFETY: the processor has AVX.
+        Self(unsafe { _mm256_div_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn mul_sub(self, factor: Self, less: Self) -> Self {
+        // SAFETY: the processor has FMA.
+        Self(unsafe { _mm256_fmsub_ps(self.0, factor.0, less.0) })
+    }
+    #[inline(always)]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
         // SAFETY: the processor has FMA.
         Self(unsafe { _mm256_fmadd_ps(self.0, factor.0, addend.0) })
+    }
+    #[inline(always)]
+    fn negated_mul_add(self, factor: Self, addend: Self) -> Self {
+        // SAFETY: the processor has FMA.
+        Self(unsafe { _mm256_fnmadd_ps(self.0, factor.0, addend.0) })
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
@@ -77,5 +104,18 @@ impl Lanes for Avx2 {
     fn at_most(self, other: Self) -> u32 {
         // SAFETY: the processor has AVX.
         unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0)) }.cast_unsigned()
+    }
+    #[inline(always)]
+    fn equal(number: u32, to: &[u32]) -> u32 {
+        let eight: &[u32; 8] = to.first_chunk().expect("eight numbers");
+        // SAFETY: the processor has AVX2, and eight numbers stand at this address.
+        let equal = unsafe {
+            let to = _mm256_loadu_si256(eight.as_ptr().cast());
+            _mm256_movemask_ps(_mm256_castsi256_ps(_mm256_cmpeq_epi32(
+                to,
+                _mm256_set1_epi32(number.cast_signed()),
+            )))
+        };
+        equal.cast_unsigned()
     }
 }

@@ -5,13 +5,14 @@
 //! Compressed Wide BVHs, 2017, section 3.1): C(n, i) is the least cost of the subtree n laid out as a forest of at most i
 //! wide subtrees.
 
-use super::{BLOCK, Child, Isa, Node, PAD, WIDTH, WideTree};
+use super::isa::Isa;
+use super::{BLOCK, Child, HALF, NONE, Node, Numbers, PAD, WIDTH, WideTree};
 use obvhs::bvh2::Bvh2;
 use vitrum_math::Vec3;
 
 /// Cost of a wide node, and of a block of a leaf, relative to each other.
 const NODE_COST: f32 = 1.0;
-const BLOCK_COST: f32 = 0.7;
+const BLOCK_COST: f32 = 0.3;
 
 /// A leaf holds at most so many blocks.
 const LEAF_BLOCKS: usize = 2;
@@ -26,7 +27,7 @@ struct Collapse<'b> {
     sizes: Vec<u32>,
 }
 
-pub(super) fn collapse(binary: &Bvh2) -> WideTree {
+pub(super) fn collapse(binary: &Bvh2) -> WideTree<Numbers> {
     let mut collapse = Collapse {
         binary,
         costs: vec![[0.0; WIDTH - 1]; binary.nodes.len()],
@@ -84,7 +85,7 @@ impl Collapse<'_> {
     }
 
     /// From the root down.
-    fn lay_out(&self) -> WideTree {
+    fn lay_out(&self) -> WideTree<Numbers> {
         let mut tree = WideTree { nodes: vec![Node::EMPTY], blocks: Vec::new(), depth: 0, isa: Isa::best() };
         // Binary subtrees that wait to become wide nodes: where, and how deep.
         let mut open = vec![(0usize, 0usize, 1usize)];
@@ -104,8 +105,8 @@ impl Collapse<'_> {
             for (slot, &root) in roots.iter().enumerate() {
                 let child = if self.is_leaf(root) {
                     let first = tree.blocks.len();
-                    self.fill_blocks(root, &mut tree.blocks);
-                    Child::leaf(first, tree.blocks.len() - first)
+                    let longest = self.fill_blocks(root, &mut tree.blocks);
+                    Child::leaf(first, (self.sizes[root] as usize).div_ceil(HALF), longest)
                 } else {
                     tree.nodes.push(Node::EMPTY);
                     open.push((root, tree.nodes.len() - 1, depth + 1));
@@ -139,8 +140,10 @@ impl Collapse<'_> {
         }
     }
 
-    fn fill_blocks(&self, root: usize, blocks: &mut Vec<[u32; BLOCK]>) {
+    /// Puts the items below `root` into new blocks; returns the longest diagonal of the boxes around them.
+    fn fill_blocks(&self, root: usize, blocks: &mut Vec<Numbers>) -> f32 {
         let mut filled = BLOCK;
+        let mut longest = 0.0f32;
         let mut open = vec![root];
         while let Some(node) = open.pop() {
             if let Some([left, right]) = self.children(node) {
@@ -148,16 +151,18 @@ impl Collapse<'_> {
                 continue;
             }
             let node = &self.binary.nodes[node];
+            longest = longest.max(node.aabb().diagonal().length());
             let items = node.first_index as usize..(node.first_index + node.prim_count) as usize;
             for &item in &self.binary.primitive_indices[items] {
                 if filled == BLOCK {
-                    blocks.push([WideTree::NONE; BLOCK]);
+                    blocks.push([NONE; BLOCK]);
                     filled = 0;
                 }
                 blocks.last_mut().expect("just made")[filled] = item;
                 filled += 1;
             }
         }
+        longest
     }
 }
 
