@@ -4,7 +4,9 @@ use crate::departure::Query;
 use crate::interaction::SurfaceInteraction;
 use crate::object::Object;
 use crate::shape::{Crossing, Sphere};
-use crate::wide::{FrameRay, Lanes, NONE, Numbers, Part, Processor, Task, UnitFrame, Visitor, WideTree};
+use crate::wide::{
+    Build, FrameRay, Lanes, NONE, Numbers, Part, Processor, Task, UnitFrame, Visitor, WideTree,
+};
 use std::ops::ControlFlow;
 use vitrum_math::Bounds;
 
@@ -189,9 +191,9 @@ impl Aggregate {
         }
         let tree = (!is_flat).then(|| {
             let frame = UnitFrame::around(&bounds);
-            let boxes = WideTree::build(
-                bounded.iter().map(|(_, b)| (frame.inward(b.min).as_vec3(), frame.inward(b.max).as_vec3())),
-            );
+            let boxes =
+                bounded.iter().map(|(_, b)| (frame.inward(b.min).as_vec3(), frame.inward(b.max).as_vec3()));
+            let boxes = WideTree::build(boxes, Build::default());
             ObjectTree { frame, boxes, objects: bounded.iter().map(|(id, _)| *id).collect() }
         });
         Self { objects, spheres, flat, tree, isolated, bounds }

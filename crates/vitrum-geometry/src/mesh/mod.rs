@@ -15,3 +15,5 @@ pub use health::{Component, Defect, Finding, Health, Mended, Place, Remedy, heal
 pub use normals::{flat_normals, smooth_normals};
 pub(crate) use triangle_mesh::MeshPoint;
 pub use triangle_mesh::{MeshError, TriangleMesh};
+
+pub use crate::wide::Build;

@@ -1,6 +1,6 @@
 //! The tree against trying every triangle, and rays aimed where meshes leak.
 
-use super::{MeshData, TriangleMesh, smooth_normals};
+use super::{Build, MeshData, TriangleMesh, smooth_normals};
 use crate::aggregate::{Aggregate, Counters, Hit, Nearest};
 use crate::departure::Query;
 use crate::interaction::Side;
@@ -123,7 +123,15 @@ fn the_tree_finds_what_trying_every_triangle_finds() {
     }
     for (number, data) in meshes.iter().enumerate() {
         let mesh = TriangleMesh::new(data).expect("valid mesh");
-        let walked: Vec<_> = Isa::all().iter().map(|isa| mesh.clone().with_instructions(*isa)).collect();
+        let builds = [Build::Fast, Build::Medium, Build::Best];
+        let walked: Vec<_> = builds
+            .iter()
+            .flat_map(|build| Isa::all().iter().map(move |isa| (build, isa)))
+            .map(|how| {
+                let mesh = TriangleMesh::with_build(data, *how.0).expect("valid mesh");
+                (how, mesh.with_instructions(*how.1))
+            })
+            .collect();
         let (centre, size) = (mesh.bounds().centre(), mesh.bounds().extent().max_element());
         let mut hits = 0;
         for i in 0..3000 {
@@ -138,13 +146,13 @@ fn the_tree_finds_what_trying_every_triangle_finds() {
             let mut oracle = Nearest::default();
             mesh.closest_of_all(&ray, &Query::new(ray), &mut oracle);
             let found = oracle.found();
-            for (mesh, isa) in walked.iter().zip(Isa::all()) {
-                assert_eq!(closest(mesh, &ray), found, "{isa:?}: mesh {number}, {ray:?}");
+            for (how, mesh) in &walked {
+                assert_eq!(closest(mesh, &ray), found, "{how:?}: mesh {number}, {ray:?}");
                 let limits = [f64::INFINITY, found.map_or(1.0, |hit| hit.t)];
                 for limit in limits {
                     let any = mesh.any(&ray, &Query::new(ray), 0, limit, &mut Counters::default());
                     let expected = found.is_some_and(|hit| hit.t < limit);
-                    assert_eq!(any, expected, "{isa:?}, to {limit}: mesh {number}, {ray:?}");
+                    assert_eq!(any, expected, "{how:?}, to {limit}: mesh {number}, {ray:?}");
                 }
             }
             hits += u32::from(found.is_some());

@@ -7,7 +7,7 @@ use crate::aggregate::{Counters, Hit, Nearest};
 use crate::departure::{Departure, Query};
 #[cfg(test)]
 use crate::wide::Isa;
-use crate::wide::{UnitFrame, WideTree};
+use crate::wide::{Build, UnitFrame, WideTree};
 use vitrum_math::{Bounds, DVec3, Ray, Vec3, gamma};
 
 /// Triangles in a unit frame of their own (single precision), with the tree that finds them.
@@ -89,6 +89,14 @@ impl TriangleMesh {
     /// # Errors
     /// [`MeshError`] for a mesh that is empty, not finite, too large, or has indices out of range.
     pub fn new(data: &MeshData) -> Result<Self, MeshError> {
+        Self::with_build(data, Build::default())
+    }
+
+    /// The same with more or less time for the tree.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new).
+    pub fn with_build(data: &MeshData, build: Build) -> Result<Self, MeshError> {
         Self::check_positions(data)?;
         if u32::try_from(data.triangles.len()).is_err() {
             return Err(MeshError::TooLarge(data.triangles.len()));
@@ -127,10 +135,11 @@ impl TriangleMesh {
             vec![]
         };
         let corners = |t: &[u32; 3]| t.map(|i| vertices[i as usize]);
-        let tree = WideTree::build(triangles.iter().map(|t| {
+        let boxes = triangles.iter().map(|t| {
             let [a, b, c] = corners(t);
             (a.min(b).min(c), a.max(b).max(c))
-        }));
+        });
+        let tree = WideTree::build(boxes, build);
         let tree = tree.map(|faces| TriangleBlock::new(faces, |face| corners(&triangles[face as usize])));
         let materials = if data.materials.len() == data.triangles.len() {
             kept.iter().map(|&i| data.materials[i]).collect()

@@ -10,6 +10,7 @@ use crate::scene::{self, MaterialChoice, Normals, SceneDesc, Step};
 use std::collections::BTreeMap;
 use std::path::Path;
 use vitrum_geometry::Object;
+use vitrum_geometry::mesh::Build;
 use vitrum_geometry::shape::{Cuboid, Cylinder, Disk, Plane, Rectangle, Shape, ShapeError, Sphere};
 use vitrum_materials::Material;
 use vitrum_math::{Rgb, Transform, unit};
@@ -116,12 +117,13 @@ impl<'a> Lowering<'a> {
             self.problems.push(error(self.source, object.span, message, "this instance"));
             return;
         }
-        if let scene::Shape::Mesh { file, file_span, normals, group, force } = shape {
+        if let scene::Shape::Mesh { file, file_span, normals, build, group, force } = shape {
             self.mesh(
                 object,
                 file,
                 *file_span,
                 *normals,
+                *build,
                 group.as_ref().map(|g| g.text.as_str()),
                 *force,
                 &transform,
@@ -222,6 +224,7 @@ impl<'a> Lowering<'a> {
         file: &Path,
         file_span: crate::diagnostic::Span,
         normals: Normals,
+        build: Build,
         group: Option<&str>,
         force: bool,
         transform: &Transform,
@@ -232,7 +235,7 @@ impl<'a> Lowering<'a> {
         let (source, problems) = (self.source, &mut self.problems);
         let mut warn =
             |warning: &str| problems.push(Diagnostic::warning(path.display().to_string(), warning));
-        let parts = match self.meshes.prepare(&path, normals, group, &mut warn) {
+        let parts = match self.meshes.prepare(&path, normals, build, group, &mut warn) {
             Ok(parts) => parts.to_vec(),
             Err(reason) => {
                 let mut problem = error(source, file_span, reason.to_string(), "this file");

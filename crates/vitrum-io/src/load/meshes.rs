@@ -5,7 +5,9 @@ use crate::scene::Normals;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use vitrum_geometry::mesh::{MeshData, MeshError, TriangleMesh, flat_normals, health, mend, smooth_normals};
+use vitrum_geometry::mesh::{
+    Build, MeshData, MeshError, TriangleMesh, flat_normals, health, mend, smooth_normals,
+};
 
 /// What a mesh of a scene is like.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,7 +46,7 @@ pub(super) struct Prepared {
 pub(super) struct Meshes {
     /// Each with whether its warnings are still to be told.
     files: BTreeMap<PathBuf, (ObjFile, bool)>,
-    prepared: BTreeMap<(PathBuf, u8, Option<String>), Vec<Prepared>>,
+    prepared: BTreeMap<(PathBuf, (u8, u8), Option<String>), Vec<Prepared>>,
 }
 
 /// Why a mesh can't be used.
@@ -89,6 +91,7 @@ impl Meshes {
         &mut self,
         path: &Path,
         normals: Normals,
+        build: Build,
         group: Option<&str>,
         warn: &mut impl FnMut(&str),
     ) -> Result<&[Prepared], PrepareError> {
@@ -100,7 +103,7 @@ impl Meshes {
         {
             file.warnings.iter().for_each(|w| warn(w));
         }
-        let key = (path.to_owned(), normals as u8, group.map(str::to_owned));
+        let key = (path.to_owned(), (normals as u8, build as u8), group.map(str::to_owned));
         if !self.prepared.contains_key(&key) {
             let (file, _) = &self.files[path];
             let parts = select(file, group).map_err(|present| PrepareError::NoGroup {
@@ -109,7 +112,7 @@ impl Meshes {
                 present,
             })?;
             let prepared: Result<Vec<_>, _> =
-                parts.iter().map(|part| prepare(path, part, &file.materials, normals)).collect();
+                parts.iter().map(|part| prepare(path, part, &file.materials, normals, build)).collect();
             let prepared = prepared.map_err(|reason| PrepareError::Mesh { path: path.to_owned(), reason })?;
             self.prepared.insert(key.clone(), prepared);
         }
@@ -169,6 +172,7 @@ fn prepare(
     part: &Part,
     materials: &[MtlMaterial],
     normals: Normals,
+    build: Build,
 ) -> Result<Prepared, MeshError> {
     TriangleMesh::check_positions(&part.mesh)?;
     let mut data = part.mesh.clone();
@@ -193,7 +197,7 @@ fn prepare(
         Normals::Flat => flat_normals(data),
         Normals::Smooth => smooth_normals(data),
     };
-    let mesh = TriangleMesh::new(&data)?;
+    let mesh = TriangleMesh::with_build(&data, build)?;
     let report = MeshReport {
         object: String::new(),
         file: path.to_owned(),

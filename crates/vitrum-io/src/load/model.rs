@@ -7,6 +7,7 @@ use crate::scene::{
     Name, Normals, Object, Output, Pattern, Phong, Render, SceneDesc, Shape, Texture, Tone, Transform,
 };
 use std::path::Path;
+use vitrum_geometry::mesh::Build;
 use vitrum_math::{Bounds, DVec3, Rgb, unit};
 
 /// What the model is made of.
@@ -114,8 +115,14 @@ fn model(path: &Path, file: &ObjFile, options: &ModelOptions) -> Object {
             Some(Model::Matte { color: ColourOrTexture::Colour(Rgb::splat(0.6)), ka: 1.0, kd: 1.0 })
         }
     };
-    let shape =
-        Shape::Mesh { file: path.to_owned(), file_span: Span::default(), normals, group: None, force: true };
+    let shape = Shape::Mesh {
+        file: path.to_owned(),
+        file_span: Span::default(),
+        normals,
+        build: Build::default(),
+        group: None,
+        force: true,
+    };
     object("model", shape, material)
 }
 

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use vitrum_geometry::mesh::Build;
 use vitrum_math::DVec3;
 
 use super::{Material, Name};
@@ -94,6 +95,8 @@ pub enum Shape {
         file_span: Span,
         /// How it is shaded.
         normals: Normals,
+        /// How much time goes into its tree.
+        build: Build,
         /// The one object or group of the file to take; none takes all.
         group: Option<Name>,
         /// Whether an open or damaged mesh is taken as solid glass.

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
+use vitrum_geometry::mesh::Build;
 
 use super::super::schema::{self, Key, Realm, SMALLEST};
 use super::super::{MaterialChoice, Normals, Object, Shape, Step, Transform};
@@ -116,6 +117,8 @@ fn mesh(fields: &mut Fields<'_, '_>) -> Option<Shape> {
     let file = fields.text("file");
     let normals = fields
         .choice("normals", &[("smooth", Normals::Smooth), ("flat", Normals::Flat), ("file", Normals::File)]);
+    let build =
+        fields.choice("build", &[("fast", Build::Fast), ("medium", Build::Medium), ("best", Build::Best)]);
     let group = fields.text("group");
     let force = fields.boolean("force");
     let file = file?;
@@ -123,6 +126,7 @@ fn mesh(fields: &mut Fields<'_, '_>) -> Option<Shape> {
         file: file.text.into(),
         file_span: file.span,
         normals: normals?,
+        build: build?,
         group,
         force: force?,
     })

@@ -126,6 +126,12 @@ pub const OBJECT: Table = Table {
                         "shading: rounded, faceted, or as the file says (faceted where it says nothing)",
                     )
                     .default("\"file\""),
+                    Key::new(
+                        "build",
+                        Kind::Choice(&["fast", "medium", "best"]),
+                        "how much time goes into the tree that finds its triangles; the picture is the same",
+                    )
+                    .default("\"medium\""),
                     Key::new("group", Kind::Text, "the one object or group of the file to take")
                         .or("all of them"),
                     Key::new(
