@@ -5,6 +5,7 @@
 
 use libloading::{Library, Symbol};
 use std::ffi::{CString, c_char, c_int, c_uint, c_void};
+use std::mem::ManuallyDrop;
 use std::path::Path;
 use std::ptr;
 
@@ -42,7 +43,8 @@ type Query = unsafe extern "C" fn(*mut c_void, *mut RayHit, *const c_void);
 
 /// A mesh in a scene of Embree's.
 pub(crate) struct Scene {
-    embree: Library,
+    /// Never unloaded: its threads may still be on their way out.
+    embree: ManuallyDrop<Library>,
     device: *mut c_void,
     scene: *mut c_void,
     intersect: Query,
@@ -107,7 +109,7 @@ impl Scene {
             let start = super::now();
             commit(scene);
             let seconds = start.elapsed().as_secs_f64();
-            Ok((Self { embree: library, device, scene, intersect, occluded }, seconds))
+            Ok((Self { embree: ManuallyDrop::new(library), device, scene, intersect, occluded }, seconds))
         }
     }
 

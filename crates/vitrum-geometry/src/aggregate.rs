@@ -2,12 +2,14 @@
 
 use crate::departure::Query;
 use crate::interaction::SurfaceInteraction;
+use crate::mesh::TriangleMesh;
 use crate::object::Object;
 use crate::shape::{Crossing, Sphere};
 use crate::wide::{
     Build, FrameRay, Lanes, NONE, Numbers, Part, Processor, Task, UnitFrame, Visitor, WideTree,
 };
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use vitrum_math::Bounds;
 
 /// Bounded objects are tried one by one while their costs sum to at most this; more stand in a tree. Measured: spheres are
@@ -77,6 +79,8 @@ pub struct Aggregate {
     objects: Vec<Object>,
     /// Tried for every ray, while bounded objects are few: spheres, side by side in memory.
     spheres: Vec<(u32, Sphere)>,
+    /// And meshes, which are asked at once.
+    meshes: Vec<(u32, Arc<TriangleMesh>)>,
     /// Tried for every ray: infinite objects, and all others while bounded objects are few.
     flat: Vec<u32>,
     /// The rest.
@@ -182,21 +186,24 @@ impl Aggregate {
         let cost =
             |id: u32| if objects[id as usize].as_sphere().is_some() { SPHERE_COST } else { OTHER_COST };
         let is_flat = bounded.iter().map(|(id, _)| cost(*id)).sum::<usize>() <= FLAT_LIMIT;
-        let (mut spheres, mut flat) = (Vec::new(), Vec::new());
+        let (mut spheres, mut meshes, mut flat) = (Vec::new(), Vec::new(), Vec::new());
         for (id, object) in (0u32..).zip(&objects).filter(|(_, o)| is_flat || o.bounds().is_none()) {
-            match object.as_sphere() {
-                Some(sphere) => spheres.push((id, *sphere)),
-                None => flat.push(id),
+            if let Some(sphere) = object.as_sphere() {
+                spheres.push((id, *sphere));
+            } else if let Some(mesh) = object.as_mesh() {
+                meshes.push((id, Arc::clone(mesh)));
+            } else {
+                flat.push(id);
             }
         }
         let tree = (!is_flat).then(|| {
             let frame = UnitFrame::around(&bounds);
             let boxes =
                 bounded.iter().map(|(_, b)| (frame.inward(b.min).as_vec3(), frame.inward(b.max).as_vec3()));
-            let boxes = WideTree::build(boxes, Build::default());
+            let boxes = WideTree::build(boxes, Build::default()).expect("fewer objects than fit into memory");
             ObjectTree { frame, boxes, objects: bounded.iter().map(|(id, _)| *id).collect() }
         });
-        Self { objects, spheres, flat, tree, isolated, bounds }
+        Self { objects, spheres, meshes, flat, tree, isolated, bounds }
     }
 
     /// The objects, by id.
@@ -229,6 +236,9 @@ impl Aggregate {
                 nearest.offer(Hit { t, object: *id, face, barycentrics: [0.0; 2] });
             }
         }
+        for (id, mesh) in &self.meshes {
+            mesh.closest(&query.ray, query, *id, &mut nearest, counters);
+        }
         for &id in &self.flat {
             self.objects[id as usize].closest(query, id, &mut nearest, counters);
         }
@@ -252,6 +262,11 @@ impl Aggregate {
     pub fn occluded(&self, query: &Query, limit: f64, counters: &mut Counters) -> bool {
         for (id, sphere) in &self.spheres {
             if query.first(sphere.crossings(&query.ray, query.face_left(*id)), *id).t < limit {
+                return true;
+            }
+        }
+        for (id, mesh) in &self.meshes {
+            if mesh.any(&query.ray, query, *id, limit, counters) {
                 return true;
             }
         }

@@ -5,6 +5,7 @@ use crate::departure::Query;
 use crate::interaction::SurfaceInteraction;
 use crate::mesh::{MeshPoint, TriangleMesh};
 use crate::shape::{Crossing, Plane, Rectangle, Shape, ShapeError, Sphere, SurfacePoint};
+use std::sync::Arc;
 use vitrum_math::{Bounds, Transform, unit};
 
 /// A shape with its transform and orientation.
@@ -55,6 +56,14 @@ impl Object {
     pub(crate) fn as_sphere(&self) -> Option<&Sphere> {
         match (&self.shape, &self.transform) {
             (Shape::Sphere(sphere), None) => Some(sphere),
+            _ => None,
+        }
+    }
+
+    /// The mesh, when the object is one that needs no transform.
+    pub(crate) fn as_mesh(&self) -> Option<&Arc<TriangleMesh>> {
+        match (&self.shape, &self.transform) {
+            (Shape::Mesh(mesh), None) => Some(mesh),
             _ => None,
         }
     }

@@ -60,8 +60,8 @@ pub enum MeshError {
         /// Index of the first such triangle, from 0.
         triangle: usize,
     },
-    /// More triangles than 32-bit indices count.
-    #[error("the mesh has {0} triangles, the limit is {max}", max = u32::MAX)]
+    /// More triangles than the numbers in its tree can count.
+    #[error("the mesh has {0} triangles, more than its tree can hold (about a hundred million); split it")]
     TooLarge(usize),
 }
 
@@ -139,7 +139,8 @@ impl TriangleMesh {
             let [a, b, c] = corners(t);
             (a.min(b).min(c), a.max(b).max(c))
         });
-        let tree = WideTree::build(boxes, build);
+        let too_large = || MeshError::TooLarge(data.triangles.len());
+        let tree = WideTree::build(boxes, build).ok_or_else(too_large)?;
         let tree = tree.map(|faces| TriangleBlock::new(faces, |face| corners(&triangles[face as usize])));
         let materials = if data.materials.len() == data.triangles.len() {
             kept.iter().map(|&i| data.materials[i]).collect()

@@ -67,8 +67,8 @@ const HALF: usize = BLOCK / 2;
 
 /// What a slot of a node leads to: the number of a node, or bits of a leaf.
 ///
-/// From the highest bit: one for a leaf; five that say how long the diagonals of its items are, as a power of two; two for the
-/// number of halves of blocks; the number of the first block.
+/// From the highest bit: one for a leaf; five for its reach, as a power of two; three for the number of halves of blocks; the
+/// number of the first block.
 #[derive(Clone, Copy, Debug)]
 struct Child(u32);
 
@@ -83,7 +83,7 @@ enum Kind {
 struct Leaf {
     /// The first block that they stand in.
     first: usize,
-    /// One to four halves of blocks.
+    /// One to eight halves of blocks.
     halves: usize,
     /// No item has bounds with a diagonal longer than this, which is 2^-22 or more.
     reach: f32,
@@ -92,8 +92,8 @@ struct Leaf {
 impl Child {
     const LEAF: u32 = 1 << 31;
     const REACH: u32 = 26;
-    const HALVES: u32 = 24;
-    /// Blocks are fewer than this.
+    const HALVES: u32 = 23;
+    /// Blocks are at most so many: enough for a hundred million triangles.
     const BLOCKS: usize = 1 << Self::HALVES;
     /// The exponent (biased, as in a float) of the smallest reach.
     const SMALLEST: u32 = 127 - 22;
@@ -102,9 +102,9 @@ impl Child {
         Self(u32::try_from(index).expect("fewer nodes than items"))
     }
 
-    /// One to four halves of blocks, of items whose bounds have a diagonal of `longest` at most.
+    /// One to eight halves of blocks, of items whose bounds have a diagonal of `longest` at most.
     fn leaf(first: usize, halves: usize, longest: f32) -> Self {
-        assert!((1..=4).contains(&halves) && first < Self::BLOCKS);
+        assert!((1..=8).contains(&halves) && first < Self::BLOCKS);
         let exponent = (longest.to_bits() >> 23) + 1;
         let reach = exponent.clamp(Self::SMALLEST, Self::SMALLEST + 31) - Self::SMALLEST;
         Self(Self::LEAF | reach << Self::REACH | (halves as u32 - 1) << Self::HALVES | first as u32)
@@ -117,7 +117,7 @@ impl Child {
         } else {
             Kind::Leaf(Leaf {
                 first: self.0 as usize & (Self::BLOCKS - 1),
-                halves: 1 + (self.0 >> Self::HALVES & 3) as usize,
+                halves: 1 + (self.0 >> Self::HALVES & 7) as usize,
                 reach: f32::from_bits(((self.0 >> Self::REACH & 31) + Self::SMALLEST) << 23),
             })
         }
@@ -178,12 +178,12 @@ impl Boundable for Item {
 }
 
 impl WideTree<Numbers> {
-    /// The tree over boxes in a unit frame.
-    pub(crate) fn build(boxes: impl Iterator<Item = (Vec3, Vec3)>, build: Build) -> Self {
+    /// The tree over boxes in a unit frame; `None` if there are too many.
+    pub(crate) fn build(boxes: impl Iterator<Item = (Vec3, Vec3)>, build: Build) -> Option<Self> {
         let items: Vec<Item> =
             boxes.map(|(min, max)| Item(Aabb { min: min.into(), max: max.into() })).collect();
         if items.is_empty() {
-            return Self { nodes: vec![Node::EMPTY], blocks: Vec::new(), depth: 1, isa: Isa::best() };
+            return Some(Self { nodes: vec![Node::EMPTY], blocks: Vec::new(), depth: 1, isa: Isa::best() });
         }
         let binary = obvhs::bvh2::builder::build_bvh2(&items, build.parameters(), &mut Duration::default());
         collapse::collapse(&binary)
