@@ -6,7 +6,7 @@ use crate::mesh::TriangleMesh;
 use crate::object::Object;
 use crate::shape::{Crossing, Sphere};
 use crate::wide::{
-    Build, FrameRay, Lanes, NONE, Numbers, Part, Processor, Task, UnitFrame, Visitor, WideTree,
+    Build, FrameRay, Items, Lanes, NONE, Numbers, Part, Processor, Task, UnitFrame, Visitor, WideTree,
 };
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -17,6 +17,9 @@ use vitrum_math::Bounds;
 const FLAT_LIMIT: usize = 24;
 const SPHERE_COST: usize = 1;
 const OTHER_COST: usize = 8;
+
+/// An object costs about as much as a node, and has an answer of its own.
+const OBJECTS: Items = Items::OneByOne(0.7);
 
 /// What a ray hits first.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -200,7 +203,8 @@ impl Aggregate {
             let frame = UnitFrame::around(&bounds);
             let boxes =
                 bounded.iter().map(|(_, b)| (frame.inward(b.min).as_vec3(), frame.inward(b.max).as_vec3()));
-            let boxes = WideTree::build(boxes, Build::default()).expect("fewer objects than fit into memory");
+            let boxes = WideTree::build(boxes, OBJECTS, Build::default())
+                .expect("fewer objects than fit into memory");
             ObjectTree { frame, boxes, objects: bounded.iter().map(|(id, _)| *id).collect() }
         });
         Self { objects, spheres, meshes, flat, tree, isolated, bounds }

@@ -6,7 +6,7 @@ use crate::interaction::SurfaceInteraction;
 use crate::mesh::{MeshPoint, TriangleMesh};
 use crate::shape::{Crossing, Plane, Rectangle, Shape, ShapeError, Sphere, SurfacePoint};
 use std::sync::Arc;
-use vitrum_math::{Bounds, Transform, unit};
+use vitrum_math::{Bounds, Ray, Transform, unit};
 
 /// A shape with its transform and orientation.
 #[derive(Clone, Debug)]
@@ -110,8 +110,7 @@ impl Object {
 
     /// The first crossing of an analytic shape that counts; at infinity when there is none.
     #[inline]
-    fn first(&self, query: &Query, id: u32) -> Crossing {
-        let ray = &self.transform.as_ref().map_or(query.ray, |t| t.object_ray(&query.ray));
+    fn first(&self, ray: &Ray, query: &Query, id: u32) -> Crossing {
         let leaving = query.face_left(id);
         let crossings = match &self.shape {
             Shape::Sphere(s) => s.crossings(ray, leaving),
@@ -128,31 +127,47 @@ impl Object {
     /// Offers the first hit that counts.
     #[inline]
     pub(crate) fn closest(&self, query: &Query, id: u32, nearest: &mut Nearest, counters: &mut Counters) {
-        match (&self.shape, &self.transform) {
-            (Shape::Mesh(mesh), None) => mesh.closest(&query.ray, query, id, nearest, counters),
-            (Shape::Mesh(mesh), Some(t)) => {
-                mesh.closest(&t.object_ray(&query.ray), query, id, nearest, counters);
-            }
-            _ => self.closest_crossing(query, id, nearest),
+        match &self.transform {
+            None => self.closest_along(&query.ray, query, id, nearest, counters),
+            Some(t) => self.closest_along(&t.object_ray(&query.ray), query, id, nearest, counters),
         }
     }
 
-    /// The same for analytic shapes.
-    #[inline(never)]
-    fn closest_crossing(&self, query: &Query, id: u32, nearest: &mut Nearest) {
-        let Crossing { t, face } = self.first(query, id);
-        if t <= nearest.limit() && t < f64::INFINITY {
-            nearest.offer(Hit { t, object: id, face, barycentrics: [0.0; 2] });
+    /// The same with the ray in the frame of the shape.
+    #[inline]
+    fn closest_along(
+        &self,
+        ray: &Ray,
+        query: &Query,
+        id: u32,
+        nearest: &mut Nearest,
+        counters: &mut Counters,
+    ) {
+        if let Shape::Mesh(mesh) = &self.shape {
+            mesh.closest(ray, query, id, nearest, counters);
+        } else {
+            let Crossing { t, face } = self.first(ray, query, id);
+            if t <= nearest.limit() && t < f64::INFINITY {
+                nearest.offer(Hit { t, object: id, face, barycentrics: [0.0; 2] });
+            }
         }
     }
 
     /// True when something of it is hit nearer than `limit`.
     #[inline]
     pub(crate) fn any(&self, query: &Query, id: u32, limit: f64, counters: &mut Counters) -> bool {
-        match (&self.shape, &self.transform) {
-            (Shape::Mesh(mesh), None) => mesh.any(&query.ray, query, id, limit, counters),
-            (Shape::Mesh(mesh), Some(t)) => mesh.any(&t.object_ray(&query.ray), query, id, limit, counters),
-            _ => self.first(query, id).t < limit,
+        match &self.transform {
+            None => self.any_along(&query.ray, query, id, limit, counters),
+            Some(t) => self.any_along(&t.object_ray(&query.ray), query, id, limit, counters),
+        }
+    }
+
+    /// The same with the ray in the frame of the shape.
+    #[inline]
+    fn any_along(&self, ray: &Ray, query: &Query, id: u32, limit: f64, counters: &mut Counters) -> bool {
+        match &self.shape {
+            Shape::Mesh(mesh) => mesh.any(ray, query, id, limit, counters),
+            _ => self.first(ray, query, id).t < limit,
         }
     }
 

@@ -20,7 +20,7 @@ use vitrum_math::{DVec3, Ray, Vec3};
 pub(crate) struct TriangleBlock {
     /// By corner, axis and triangle.
     corners: [[[f32; BLOCK]; 3]; 3],
-    /// [`NONE`](crate::wide::NONE) where there is no triangle.
+    /// [`NONE`] where there is no triangle.
     pub(crate) faces: Numbers,
 }
 

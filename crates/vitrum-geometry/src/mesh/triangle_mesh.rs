@@ -7,7 +7,7 @@ use crate::aggregate::{Counters, Hit, Nearest};
 use crate::departure::{Departure, Query};
 #[cfg(test)]
 use crate::wide::Isa;
-use crate::wide::{Build, UnitFrame, WideTree};
+use crate::wide::{Build, Items, UnitFrame, WideTree};
 use vitrum_math::{Bounds, DVec3, Ray, Vec3, gamma};
 
 /// Triangles in a unit frame of their own (single precision), with the tree that finds them.
@@ -25,6 +25,10 @@ pub struct TriangleMesh {
     materials: Vec<u32>,
     pub(super) tree: WideTree<TriangleBlock>,
 }
+
+/// Measured next to Embree: from 0.2 to 0.45 rays take the same time within 3 %. A node ends in a branch that can't be
+/// foreseen, most blocks in one that can.
+const BLOCKS_OF_TRIANGLES: Items = Items::Together(0.3);
 
 /// Largest coordinate of a mesh, in its own units.
 const LARGEST: f64 = 1e100;
@@ -140,7 +144,7 @@ impl TriangleMesh {
             (a.min(b).min(c), a.max(b).max(c))
         });
         let too_large = || MeshError::TooLarge(data.triangles.len());
-        let tree = WideTree::build(boxes, build).ok_or_else(too_large)?;
+        let tree = WideTree::build(boxes, BLOCKS_OF_TRIANGLES, build).ok_or_else(too_large)?;
         let tree = tree.map(|faces| TriangleBlock::new(faces, |face| corners(&triangles[face as usize])));
         let materials = if data.materials.len() == data.triangles.len() {
             kept.iter().map(|&i| data.materials[i]).collect()

@@ -177,16 +177,29 @@ impl Boundable for Item {
     }
 }
 
+/// What looking at the items of a leaf costs, next to a node.
+#[derive(Clone, Copy)]
+pub(crate) enum Items {
+    /// A block of them at a time.
+    Together(f32),
+    /// Each by itself.
+    OneByOne(f32),
+}
+
 impl WideTree<Numbers> {
     /// The tree over boxes in a unit frame; `None` if there are too many.
-    pub(crate) fn build(boxes: impl Iterator<Item = (Vec3, Vec3)>, build: Build) -> Option<Self> {
-        let items: Vec<Item> =
+    pub(crate) fn build(
+        boxes: impl Iterator<Item = (Vec3, Vec3)>,
+        items: Items,
+        build: Build,
+    ) -> Option<Self> {
+        let boxes: Vec<Item> =
             boxes.map(|(min, max)| Item(Aabb { min: min.into(), max: max.into() })).collect();
-        if items.is_empty() {
+        if boxes.is_empty() {
             return Some(Self { nodes: vec![Node::EMPTY], blocks: Vec::new(), depth: 1, isa: Isa::best() });
         }
-        let binary = obvhs::bvh2::builder::build_bvh2(&items, build.parameters(), &mut Duration::default());
-        collapse::collapse(&binary)
+        let binary = obvhs::bvh2::builder::build_bvh2(&boxes, build.parameters(), &mut Duration::default());
+        collapse::collapse(&binary, items)
     }
 }
 

@@ -41,12 +41,15 @@ pub(super) struct Prepared {
     pub(super) report: MeshReport,
 }
 
+/// What was asked for: a file, normals, a build, and the object or group.
+type Wanted = (PathBuf, u8, u8, Option<String>);
+
 /// All files of a scene, each read once, and each way of using one prepared once.
 #[derive(Default)]
 pub(super) struct Meshes {
     /// Each with whether its warnings are still to be told.
     files: BTreeMap<PathBuf, (ObjFile, bool)>,
-    prepared: BTreeMap<(PathBuf, (u8, u8), Option<String>), Vec<Prepared>>,
+    prepared: BTreeMap<Wanted, Vec<Prepared>>,
 }
 
 /// Why a mesh can't be used.
@@ -103,7 +106,7 @@ impl Meshes {
         {
             file.warnings.iter().for_each(|w| warn(w));
         }
-        let key = (path.to_owned(), (normals as u8, build as u8), group.map(str::to_owned));
+        let key = (path.to_owned(), normals as u8, build as u8, group.map(str::to_owned));
         if !self.prepared.contains_key(&key) {
             let (file, _) = &self.files[path];
             let parts = select(file, group).map_err(|present| PrepareError::NoGroup {
