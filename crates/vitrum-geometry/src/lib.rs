@@ -15,8 +15,9 @@
 //! # Meshes
 //!
 //! Vertices are `f32` in a unit frame of their own; a ray is brought into that frame in `f64`, advanced to the bounds if it
-//! comes from afar, and only then rounded. The tree and a first test of each triangle work in `f32` and are conservative; a
-//! watertight test in `f64` decides. What is returned is the smallest (t, object, face), whatever the shape of the tree.
+//! comes from afar, and only then rounded. The tree and a first test of each triangle work in `f32` and are conservative; where
+//! that test is not certain, a watertight one in `f64` decides, and the nearest hit is worked out in `f64` in any case. What is
+//! returned is the smallest (t, object, face), whatever the shape of the tree.
 
 mod aggregate;
 mod departure;

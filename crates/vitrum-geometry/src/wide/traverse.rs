@@ -28,8 +28,8 @@ pub(crate) struct Part<'t, B> {
 }
 
 /// Levels whose nodes fit on the machine's stack while they wait; deeper trees (which only pathological input makes) use
-/// the heap.
-const SHALLOW: usize = 24;
+/// the heap. So few in tests that both are used.
+const SHALLOW: usize = if cfg!(test) { 3 } else { 24 };
 
 /// Room for what waits. Aligned, and with it the whole frame of the function that walks: otherwise half of the registers
 /// that it puts away lie across two lines of the cache.
