@@ -121,13 +121,10 @@ impl Visitor<TriangleBlock> for Closest<'_, '_> {
 
     #[inline(always)]
     fn visit<P: Processor>(&mut self, part: Part<'_, TriangleBlock>, mut limit: f32) -> ControlFlow<(), f32> {
-        let Some(seen) = self.known.sheared.look::<P::Leaf>(&part, self.known.left, limit) else {
+        let Some(mut seen) = self.known.sheared.look::<P::Leaf>(&part, self.known.left, limit) else {
             return ControlFlow::Continue(limit);
         };
-        let mut candidates = seen.candidates;
-        while candidates != 0 {
-            let lane = candidates.trailing_zeros() as usize & (BLOCK - 1);
-            candidates &= candidates - 1;
+        while let Some(lane) = seen.next_lane() {
             let item = (part.from + lane) & (BLOCK - 1);
             let (near, far) = (seen.near[lane], seen.far[lane]);
             if seen.certain >> lane & 1 == 1 && near > self.known.sure_from {
@@ -189,13 +186,10 @@ impl Visitor<TriangleBlock> for Any<'_, '_> {
 
     #[inline(always)]
     fn visit<P: Processor>(&mut self, part: Part<'_, TriangleBlock>, limit: f32) -> ControlFlow<(), f32> {
-        let Some(seen) = self.known.sheared.look::<P::Leaf>(&part, self.known.left, limit) else {
+        let Some(mut seen) = self.known.sheared.look::<P::Leaf>(&part, self.known.left, limit) else {
             return ControlFlow::Continue(limit);
         };
-        let mut candidates = seen.candidates;
-        while candidates != 0 {
-            let lane = candidates.trailing_zeros() as usize & (BLOCK - 1);
-            candidates &= candidates - 1;
+        while let Some(lane) = seen.next_lane() {
             let item = (part.from + lane) & (BLOCK - 1);
             let surely = seen.certain >> lane & 1 == 1
                 && seen.near[lane] > self.known.sure_from

@@ -82,6 +82,19 @@ pub(crate) struct Seen {
     pub(crate) certain: u32,
 }
 
+impl Seen {
+    /// The candidates' lanes, one after the other.
+    #[inline(always)]
+    pub(crate) fn next_lane(&mut self) -> Option<usize> {
+        if self.candidates == 0 {
+            return None;
+        }
+        let lane = self.candidates.trailing_zeros() as usize & (BLOCK - 1);
+        self.candidates &= self.candidates - 1;
+        Some(lane)
+    }
+}
+
 /// How wrong an edge function may be, in units of the frame times the length of the triangle: 4 · 7e-7 · √2 for displaced
 /// corners, 2 (7e-7)² on a triangle as long as 2^-22, and as much again for the roundings of the function itself.
 const ERROR: f32 = 1.0 / (1 << 17) as f32;
