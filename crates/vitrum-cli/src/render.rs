@@ -11,7 +11,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 use vitrum_io::image::{self, ImageView};
 use vitrum_io::load::Loaded;
-use vitrum_tracer::{RenderError, Settings, ShadowMode, render};
+use vitrum_tracer::{RenderError, Settings, ShadowMode, on_threads, render};
 
 /// The clock of the program: the libraries have none.
 #[expect(clippy::disallowed_methods, reason = "the program shows how long it takes")]
@@ -24,7 +24,8 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
     // Before anything that takes long: a picture that can't be written is not worth rendering.
     image::check_writable(&arguments.output)?;
     let interrupt = Interrupt::listen()?;
-    let loaded = input::load(arguments.scene.as_deref(), &arguments.model, arguments.size)?;
+    let load = || input::load(arguments.scene.as_deref(), &arguments.model, arguments.size);
+    let loaded = on_threads(arguments.threads as usize, load)??;
     if !arguments.quiet {
         say(&loaded.warnings.to_string());
     }

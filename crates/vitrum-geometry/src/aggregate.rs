@@ -2,21 +2,21 @@
 
 use crate::departure::Query;
 use crate::interaction::SurfaceInteraction;
-use crate::mesh::TriangleMesh;
+use crate::mesh::{AnyHit, ClosestHit, TriangleMesh};
 use crate::object::Object;
 use crate::shape::{Crossing, Sphere};
 use crate::wide::{
-    Build, FrameRay, Items, Lanes, NONE, Numbers, Part, Processor, Task, UnitFrame, Visitor, WideTree,
+    Build, FrameRay, Isa, Items, Lanes, NONE, Numbers, Part, Processor, Task, UnitFrame, Visitor, WideTree,
 };
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use vitrum_math::Bounds;
 
 /// Bounded objects are tried one by one while their costs sum to at most this; more stand in a tree. Measured: spheres are
-/// worth sweeping up to about 24, other shapes up to about 3 (`benches/README.md`).
-const FLAT_LIMIT: usize = 24;
+/// worth sweeping up to about 12, other shapes up to 2 (`benches/README.md`).
+const FLAT_LIMIT: usize = 12;
 const SPHERE_COST: usize = 1;
-const OTHER_COST: usize = 8;
+const OTHER_COST: usize = 5;
 
 /// An object costs about as much as a node, and has an answer of its own.
 const OBJECTS: Items = Items::OneByOne(0.7);
@@ -91,6 +91,7 @@ pub struct Aggregate {
     /// For each object whether it is a convex solid apart from all others: a ray inside it can meet nothing but itself.
     isolated: Vec<bool>,
     bounds: Bounds,
+    isa: Isa,
 }
 
 #[derive(Clone, Debug)]
@@ -99,6 +100,127 @@ struct ObjectTree {
     boxes: WideTree<Numbers>,
     /// The object of each box.
     objects: Vec<u32>,
+}
+
+/// Offers the first hits of all objects that a ray can meet.
+struct Closest<'a> {
+    all: &'a Aggregate,
+    query: &'a Query,
+    nearest: &'a mut Nearest,
+    counters: &'a mut Counters,
+}
+
+impl Task for Closest<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<P: Processor>(&mut self) {
+        let Self { all, query, nearest, counters } = self;
+        if let Some(solid) = all.enclosing(query) {
+            return all.objects[solid as usize].closest(query, solid, nearest, counters);
+        }
+        if !all.spheres.is_empty() {
+            offer_spheres(&all.spheres, query, nearest);
+        }
+        for (id, mesh) in &all.meshes {
+            ClosestHit { mesh, ray: &query.ray, is_unit: true, query, object: *id, nearest, counters }
+                .run::<P>();
+        }
+        if !all.flat.is_empty() {
+            offer_others(&all.flat, &all.objects, query, nearest, counters);
+        }
+        if let Some(tree) = &all.tree {
+            offer_tree(tree, &all.objects, query, nearest, counters);
+        }
+    }
+}
+
+// None of these is inlined: the compiler would prepare for spheres and trees before it looks whether there are any.
+
+#[inline(never)]
+fn offer_spheres(spheres: &[(u32, Sphere)], query: &Query, nearest: &mut Nearest) {
+    for (id, sphere) in spheres {
+        let Crossing { t, face } = query.first(sphere.crossings(&query.ray, query.face_left(*id)), *id);
+        if t <= nearest.limit() && t < f64::INFINITY {
+            nearest.offer(Hit { t, object: *id, face, barycentrics: [0.0; 2] });
+        }
+    }
+}
+
+#[inline(never)]
+fn offer_others(
+    flat: &[u32],
+    objects: &[Object],
+    query: &Query,
+    nearest: &mut Nearest,
+    counters: &mut Counters,
+) {
+    for &id in flat {
+        objects[id as usize].closest(query, id, nearest, counters);
+    }
+}
+
+#[inline(never)]
+fn offer_tree(
+    tree: &ObjectTree,
+    objects: &[Object],
+    query: &Query,
+    nearest: &mut Nearest,
+    counters: &mut Counters,
+) {
+    tree.boxes.run(&mut ClosestObject { tree, objects, query, nearest, counters });
+}
+
+/// Looks for anything nearer than a limit.
+struct Occluded<'a> {
+    all: &'a Aggregate,
+    query: &'a Query,
+    limit: f64,
+    counters: &'a mut Counters,
+}
+
+impl Task for Occluded<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<P: Processor>(&mut self) -> bool {
+        let &mut Self { all, query, limit, ref mut counters } = self;
+        if !all.spheres.is_empty() && any_sphere(&all.spheres, query, limit) {
+            return true;
+        }
+        for (id, mesh) in &all.meshes {
+            let mut search =
+                AnyHit { mesh, ray: &query.ray, is_unit: true, query, object: *id, limit, counters };
+            if search.run::<P>() {
+                return true;
+            }
+        }
+        !all.flat.is_empty() && any_other(&all.flat, &all.objects, query, limit, counters)
+            || all.tree.as_ref().is_some_and(|tree| any_in_tree(tree, &all.objects, query, limit, counters))
+    }
+}
+
+#[inline(never)]
+fn any_sphere(spheres: &[(u32, Sphere)], query: &Query, limit: f64) -> bool {
+    spheres
+        .iter()
+        .any(|(id, sphere)| query.first(sphere.crossings(&query.ray, query.face_left(*id)), *id).t < limit)
+}
+
+#[inline(never)]
+fn any_other(flat: &[u32], objects: &[Object], query: &Query, limit: f64, counters: &mut Counters) -> bool {
+    flat.iter().any(|&id| objects[id as usize].any(query, id, limit, counters))
+}
+
+#[inline(never)]
+fn any_in_tree(
+    tree: &ObjectTree,
+    objects: &[Object],
+    query: &Query,
+    limit: f64,
+    counters: &mut Counters,
+) -> bool {
+    tree.boxes.run(&mut AnyObject { tree, objects, query, limit, found: false, counters })
 }
 
 /// Asks the objects whose boxes a ray meets, near boxes first, for the first hit.
@@ -116,7 +238,7 @@ impl Task for ClosestObject<'_> {
     #[inline(always)]
     fn run<P: Processor>(&mut self) {
         let limit = self.nearest.limit();
-        let Some(ray) = self.tree.frame.enter(&self.query.ray, limit) else { return };
+        let Some(ray) = self.tree.frame.enter::<P>(&self.query.ray, true, limit) else { return };
         self.tree.boxes.walk::<P, _>(&ray, ray.scale.box_limit(limit), &mut Among { task: self, ray });
     }
 }
@@ -136,7 +258,7 @@ impl Task for AnyObject<'_> {
 
     #[inline(always)]
     fn run<P: Processor>(&mut self) -> bool {
-        let Some(ray) = self.tree.frame.enter(&self.query.ray, self.limit) else { return false };
+        let Some(ray) = self.tree.frame.enter::<P>(&self.query.ray, true, self.limit) else { return false };
         self.tree.boxes.walk::<P, _>(&ray, ray.scale.box_limit(self.limit), &mut Among { task: self, ray });
         self.found
     }
@@ -207,7 +329,7 @@ impl Aggregate {
                 .expect("fewer objects than fit into memory");
             ObjectTree { frame, boxes, objects: bounded.iter().map(|(id, _)| *id).collect() }
         });
-        Self { objects, spheres, meshes, flat, tree, isolated, bounds }
+        Self { objects, spheres, meshes, flat, tree, isolated, bounds, isa: Isa::best() }
     }
 
     /// The objects, by id.
@@ -226,31 +348,17 @@ impl Aggregate {
     }
 
     /// What the ray hits first: the smallest (t, object, face) that counts.
-    // Not inlined, here and below: the compiler would prepare for trees and meshes before it looks whether there are any.
-    #[inline(never)]
+    #[inline]
     pub fn closest(&self, query: &Query, counters: &mut Counters) -> Option<Hit> {
         let mut nearest = Nearest::default();
-        if let Some(solid) = self.enclosing(query) {
-            self.objects[solid as usize].closest(query, solid, &mut nearest, counters);
-            return nearest.found();
-        }
-        for (id, sphere) in &self.spheres {
-            let Crossing { t, face } = query.first(sphere.crossings(&query.ray, query.face_left(*id)), *id);
-            if t <= nearest.limit() && t < f64::INFINITY {
-                nearest.offer(Hit { t, object: *id, face, barycentrics: [0.0; 2] });
-            }
-        }
-        for (id, mesh) in &self.meshes {
-            mesh.closest(&query.ray, query, *id, &mut nearest, counters);
-        }
-        for &id in &self.flat {
-            self.objects[id as usize].closest(query, id, &mut nearest, counters);
-        }
-        if let Some(tree) = &self.tree {
-            let (objects, nearest) = (&self.objects[..], &mut nearest);
-            tree.boxes.run(&mut ClosestObject { tree, objects, query, nearest, counters });
-        }
+        self.isa.run(&mut Closest { all: self, query, nearest: &mut nearest, counters });
         nearest.found()
+    }
+
+    /// True when anything is hit nearer than `limit` metres.
+    #[inline]
+    pub fn occluded(&self, query: &Query, limit: f64, counters: &mut Counters) -> bool {
+        self.isa.run(&mut Occluded { all: self, query, limit, counters })
     }
 
     /// The isolated convex solid that the ray starts inside of, if it does and is still there.
@@ -259,29 +367,6 @@ impl Aggregate {
         let departed = query.departed.as_ref()?;
         let inside = departed.behind && !query.has_passed() && self.isolated[departed.object as usize];
         inside.then_some(departed.object)
-    }
-
-    /// True when anything is hit nearer than `limit` metres.
-    #[inline(never)]
-    pub fn occluded(&self, query: &Query, limit: f64, counters: &mut Counters) -> bool {
-        for (id, sphere) in &self.spheres {
-            if query.first(sphere.crossings(&query.ray, query.face_left(*id)), *id).t < limit {
-                return true;
-            }
-        }
-        for (id, mesh) in &self.meshes {
-            if mesh.any(&query.ray, query, *id, limit, counters) {
-                return true;
-            }
-        }
-        for &id in &self.flat {
-            if self.objects[id as usize].any(query, id, limit, counters) {
-                return true;
-            }
-        }
-        let Some(tree) = &self.tree else { return false };
-        let objects = &self.objects[..];
-        tree.boxes.run(&mut AnyObject { tree, objects, query, limit, found: false, counters })
     }
 
     /// The point of a hit that [`closest`](Self::closest) found for the same query.

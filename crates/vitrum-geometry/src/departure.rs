@@ -54,6 +54,12 @@ impl Query {
         self.passed.0 > f64::NEG_INFINITY
     }
 
+    /// How far it has got so.
+    #[inline]
+    pub(crate) fn passed_at(&self) -> Option<f64> {
+        self.has_passed().then_some(self.passed.0)
+    }
+
     /// True for a hit that lies ahead and has not been passed.
     #[inline]
     pub(crate) fn admits(&self, t: f64, object: u32, face: u32) -> bool {

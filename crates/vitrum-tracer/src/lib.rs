@@ -24,7 +24,7 @@ pub use camera::{Camera, CameraError, Projection};
 pub use film::Film;
 pub use light::{Falloff, Light};
 pub use plan::Plan;
-pub use render::{Progress, RenderError, Rendering, render};
+pub use render::{Progress, RenderError, Rendering, on_threads, render};
 pub use scene::{Scene, SceneError, SceneObject};
 pub use settings::{Crop, Settings, ShadowMode};
 pub use stats::{Dropped, GivenUp, Stats};

@@ -58,32 +58,44 @@ pub enum RenderError {
     Threads(String),
 }
 
+/// Does some work on so many threads, where it can use more than one: as many as there are processors for 0, the calling
+/// one alone for 1.
+///
+/// # Errors
+/// [`RenderError::Threads`] where the system gives none.
+pub fn on_threads<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> Result<R, RenderError> {
+    if threads == 1 {
+        return Ok(work());
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    Ok(pool.map_err(|e| RenderError::Threads(e.to_string()))?.install(work))
+}
+
 /// Renders a scene.
 ///
 /// # Errors
 /// [`RenderError`] for settings that make no picture.
 pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Result<Rendering, RenderError> {
     check(settings)?;
+    on_threads(settings.threads, || render_here(scene, settings, progress))
+}
+
+/// Renders on the threads of the pool that it is called in, or on the calling one.
+fn render_here(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Rendering {
     let plan = Plan::new(scene, settings);
     let mut film = Film::new(settings.area());
     let mut stats = Stats::default();
     let tiles = tiles(settings);
-    let pool = match settings.threads {
-        1 => None,
-        n => {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build();
-            Some(pool.map_err(|e| RenderError::Threads(e.to_string()))?)
-        }
-    };
     for samples in rounds(settings.spp) {
         let work = |tile: &Crop| {
             let done = render_tile(scene, settings, &plan, *tile, samples.clone(), progress)?;
             progress.advance(done.1.samples, done.1.rays());
             Some(done)
         };
-        let done: Vec<_> = match &pool {
-            None => tiles.iter().map(work).collect(),
-            Some(pool) => pool.install(|| tiles.par_iter().map(work).collect()),
+        let done: Vec<_> = if settings.threads == 1 {
+            tiles.iter().map(work).collect()
+        } else {
+            tiles.par_iter().map(work).collect()
         };
         for (tile, (pixels, tile_stats)) in
             tiles.iter().zip(&done).filter_map(|(t, d)| Some((t, d.as_ref()?)))
@@ -92,10 +104,10 @@ pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Re
             stats.merge(tile_stats);
         }
         if done.iter().any(Option::is_none) {
-            return Ok(Rendering { film, stats, plan, complete: false });
+            return Rendering { film, stats, plan, complete: false };
         }
     }
-    Ok(Rendering { film, stats, plan, complete: true })
+    Rendering { film, stats, plan, complete: true }
 }
 
 fn check(settings: &Settings) -> Result<(), RenderError> {

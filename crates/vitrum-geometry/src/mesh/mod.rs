@@ -13,6 +13,7 @@ mod tests;
 pub use data::{MeshData, Triangle};
 pub use health::{Component, Defect, Finding, Health, Mended, Place, Remedy, health, mend};
 pub use normals::{flat_normals, smooth_normals};
+pub(crate) use search::{AnyHit, ClosestHit};
 pub(crate) use triangle_mesh::MeshPoint;
 pub use triangle_mesh::{MeshError, TriangleMesh};
 

@@ -1,52 +1,58 @@
 //! The two searches for triangles that a ray hits: for the nearest, and for any.
 //!
 //! What single precision is certain of (see [`triangle`](super::triangle)) needs no more than that while the search goes
-//! on. Everything else is settled in double precision at once: triangles met near their borders, close to where the ray
-//! starts, behind what it has passed, or no farther apart than the bounds on their distances.
+//! on. Everything else is put aside and settled in double precision at the end: triangles met near their borders, close to
+//! where the ray starts or to what it has passed, or no farther apart than the bounds on their distances. Most rays meet
+//! none, and the loop has the registers for itself. Should there be too many, they are settled on the way, in another search.
 
 use super::TriangleMesh;
 use super::triangle::{Sheared, TriangleBlock, meet_for_certain};
 use super::triangle_mesh::Candidate;
 use crate::aggregate::{Counters, Hit, Nearest};
 use crate::departure::Query;
-use crate::wide::{BLOCK, FrameRay, Part, Processor, RayScale, Task, Visitor};
+use crate::wide::{BLOCK, FrameRay, Part, Portable, Processor, Task, Visitor};
 use std::ops::ControlFlow;
 use vitrum_math::Ray;
 
 /// Looks for the first triangle that counts.
-pub(super) struct ClosestHit<'a> {
-    pub(super) mesh: &'a TriangleMesh,
-    pub(super) ray: &'a Ray,
-    pub(super) query: &'a Query,
-    pub(super) object: u32,
-    pub(super) nearest: &'a mut Nearest,
-    pub(super) counters: &'a mut Counters,
+pub(crate) struct ClosestHit<'a> {
+    pub(crate) mesh: &'a TriangleMesh,
+    pub(crate) ray: &'a Ray,
+    /// Whether the ray's direction is known to have unit length.
+    pub(crate) is_unit: bool,
+    pub(crate) query: &'a Query,
+    pub(crate) object: u32,
+    pub(crate) nearest: &'a mut Nearest,
+    pub(crate) counters: &'a mut Counters,
 }
 
 /// Looks for a triangle nearer than a limit.
-pub(super) struct AnyHit<'a> {
-    pub(super) mesh: &'a TriangleMesh,
-    pub(super) ray: &'a Ray,
-    pub(super) query: &'a Query,
-    pub(super) object: u32,
-    pub(super) limit: f64,
-    pub(super) counters: &'a mut Counters,
+pub(crate) struct AnyHit<'a> {
+    pub(crate) mesh: &'a TriangleMesh,
+    pub(crate) ray: &'a Ray,
+    /// Whether the ray's direction is known to have unit length.
+    pub(crate) is_unit: bool,
+    pub(crate) query: &'a Query,
+    pub(crate) object: u32,
+    pub(crate) limit: f64,
+    pub(crate) counters: &'a mut Counters,
 }
 
 /// What a search knows of its ray.
 struct Known {
     sheared: Sheared,
-    scale: RayScale,
     /// The face that the ray leaves.
     left: u32,
     /// Beyond this what is certainly met certainly counts.
     sure_from: f32,
+    /// Before this everything has been passed.
+    passed: f32,
 }
 
 impl Known {
     #[inline(always)]
     fn new(framed: &FrameRay, query: &Query, object: u32) -> Self {
-        let (mut left, mut sure_from) = (u32::MAX, 0.0);
+        let (mut left, mut sure_from, mut passed) = (u32::MAX, 0.0f32, f32::NEG_INFINITY);
         if let Some(departed) = &query.departed
             && departed.object == object
         {
@@ -55,10 +61,11 @@ impl Known {
             // certainly met is not seen edge on: the sine of the angle to its plane is more than 3.5e-7.
             sure_from = departed.error as f32 * 3e6;
         }
-        if query.has_passed() {
-            sure_from = f32::INFINITY;
+        if let Some(t) = query.passed_at() {
+            sure_from = sure_from.max(framed.scale.box_limit(t));
+            passed = framed.scale.sure_limit(t);
         }
-        Self { sheared: Sheared::new(framed), scale: framed.scale, left, sure_from }
+        Self { sheared: Sheared::new(framed), left, sure_from, passed }
     }
 }
 
@@ -76,10 +83,40 @@ impl Pending {
     const NONE: Self = Self { block: usize::MAX, item: 0, near: f32::INFINITY, far: f32::INFINITY };
 }
 
-struct Closest<'t, 'a> {
-    task: &'t mut ClosestHit<'a>,
+/// So many triangles are put aside.
+const MOST: usize = if cfg!(test) { 2 } else { 8 };
+
+/// Triangles that only double precision can decide on: their blocks and where they stand there.
+struct Doubtful {
+    /// So many of them are in use; more than there are, if there was no room for one.
+    count: usize,
+    items: [(u32, u32); MOST],
+}
+
+impl Doubtful {
+    const NONE: Self = Self { count: 0, items: [(0, 0); MOST] };
+
+    /// Breaks off if there is no room.
+    #[inline(always)]
+    fn put(&mut self, block: usize, item: usize) -> ControlFlow<()> {
+        self.count += 1;
+        match self.items.get_mut(self.count - 1) {
+            Some(place) => {
+                *place = (block as u32, item as u32);
+                ControlFlow::Continue(())
+            }
+            None => ControlFlow::Break(()),
+        }
+    }
+}
+
+struct Closest {
     known: Known,
     pending: Pending,
+    doubtful: Doubtful,
+    /// No farther than this is the first hit, if the nearest of those put aside is one. It nearly always is, or its
+    /// neighbour is, which is as far away.
+    assumed: f32,
 }
 
 impl Task for ClosestHit<'_> {
@@ -88,35 +125,26 @@ impl Task for ClosestHit<'_> {
     #[inline(always)]
     fn run<P: Processor>(&mut self) {
         let (mesh, limit) = (self.mesh, self.nearest.limit());
-        let Some(framed) = mesh.frame.enter(self.ray, limit) else { return };
-        let scale = framed.scale;
+        let Some(framed) = mesh.frame.enter::<P>(self.ray, self.is_unit, limit) else { return };
         let known = Known::new(&framed, self.query, self.object);
-        let mut closest = Closest { task: self, known, pending: Pending::NONE };
-        mesh.tree.walk::<P, _>(&framed, scale.box_limit(limit), &mut closest);
+        let (pending, doubtful) = (Pending::NONE, Doubtful::NONE);
+        let mut closest = Closest { known, pending, doubtful, assumed: f32::INFINITY };
+        mesh.tree.walk::<P, _>(&framed, framed.scale.box_limit(limit), &mut closest);
         let Pending { block, item, .. } = closest.pending;
         if let Some(block) = mesh.tree.blocks().get(block) {
-            let exact = mesh.frame.exact(self.ray, scale);
-            let met = meet_for_certain(&exact, &block.corners(item & (BLOCK - 1)));
-            let t = scale.outward(met.t);
-            let face = block.faces[item & (BLOCK - 1)];
+            let lane = item & (BLOCK - 1);
+            let met = meet_for_certain::<P::Exact>(&framed.exact, block, lane);
+            let t = framed.scale.outward(met.t);
+            let face = block.faces[lane];
             self.nearest.offer(Hit { t, object: self.object, face, barycentrics: met.barycentrics });
+        }
+        if closest.doubtful.count > 0 {
+            self.settle_all(&closest.doubtful, closest.assumed);
         }
     }
 }
 
-impl ClosestHit<'_> {
-    /// Asks double precision; returns the distance if that is the nearest so far.
-    #[inline(always)]
-    fn settle(&mut self, block: &TriangleBlock, lane: usize, scale: RayScale) -> Option<f64> {
-        let candidate = Candidate { face: block.faces[lane], corners: &block.corners(lane) };
-        let exact = self.mesh.frame.exact(self.ray, scale);
-        let outward = |t| scale.outward(t);
-        let hit = self.mesh.settle(&exact, outward, self.query, self.object, &candidate, self.counters)?;
-        self.nearest.offer(hit).then_some(hit.t)
-    }
-}
-
-impl Visitor<TriangleBlock> for Closest<'_, '_> {
+impl Visitor<TriangleBlock> for Closest {
     const ORDERED: bool = true;
 
     #[inline(always)]
@@ -127,30 +155,91 @@ impl Visitor<TriangleBlock> for Closest<'_, '_> {
         while let Some(lane) = seen.next_lane() {
             let item = (part.from + lane) & (BLOCK - 1);
             let (near, far) = (seen.near[lane], seen.far[lane]);
-            if seen.certain >> lane & 1 == 1 && near > self.known.sure_from {
-                if near > self.pending.far {
-                    continue;
-                }
-                if far < self.pending.near {
-                    self.pending = Pending { block: part.index, item, near, far };
-                    limit = if far < limit { far } else { limit };
-                    continue;
-                }
+            if near > self.pending.far || far < self.known.passed {
+                continue;
             }
-            if let Some(t) = self.task.settle(part.block, item, self.known.scale) {
-                limit = limit.min(self.known.scale.box_limit(t));
+            let counts = near > self.known.sure_from;
+            if counts {
+                limit = if far < limit { far } else { limit };
+            }
+            if counts && seen.certain >> lane & 1 == 1 && far < self.pending.near {
+                self.pending = Pending { block: part.index, item, near, far };
+            } else {
+                self.assumed = if counts && far < self.assumed { far } else { self.assumed };
+                self.doubtful.put(part.index, item)?;
             }
         }
         ControlFlow::Continue(limit)
     }
 }
 
-struct Any<'t, 'a> {
-    task: &'t mut AnyHit<'a>,
+impl ClosestHit<'_> {
+    /// Settles what was put aside; everything, if that was too much, or what was assumed is wrong.
+    #[cold]
+    #[inline(never)]
+    fn settle_all(&mut self, doubtful: &Doubtful, assumed: f32) {
+        // As before, and not kept since: that would be work for every ray.
+        let framed = self.mesh.frame.enter::<Portable>(self.ray, self.is_unit, f64::INFINITY);
+        let framed = &framed.expect("it was there before");
+        let items = doubtful.items.get(..doubtful.count);
+        for &(block, item) in items.unwrap_or_default() {
+            self.settle(framed, &self.mesh.tree.blocks()[block as usize], item as usize);
+        }
+        if items.is_none() || !framed.scale.is_within(self.nearest.limit(), assumed) {
+            let known = &Known::new(framed, self.query, self.object);
+            let tree = &self.mesh.tree;
+            tree.run(&mut Thorough { task: self, framed, known, found: false });
+        }
+    }
+
+    /// Asks double precision.
+    fn settle(&mut self, framed: &FrameRay, block: &TriangleBlock, item: usize) {
+        let candidate = Candidate { face: block.faces[item], corners: block.corners(item) };
+        if let Some(hit) = self.mesh.settle(framed, self.query, self.object, &candidate, self.counters) {
+            self.nearest.offer(hit);
+        }
+    }
+}
+
+/// Looks for the first triangle, or any, and settles everything on the way.
+struct Thorough<'t, T> {
+    task: &'t mut T,
+    framed: &'t FrameRay,
+    known: &'t Known,
+    /// Whether any was found, where any will do.
+    found: bool,
+}
+
+impl Task for Thorough<'_, ClosestHit<'_>> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<P: Processor>(&mut self) {
+        let (mesh, limit) = (self.task.mesh, self.framed.scale.box_limit(self.task.nearest.limit()));
+        mesh.tree.walk::<P, _>(self.framed, limit, self);
+    }
+}
+
+impl Visitor<TriangleBlock> for Thorough<'_, ClosestHit<'_>> {
+    const ORDERED: bool = true;
+
+    #[inline(always)]
+    fn visit<P: Processor>(&mut self, part: Part<'_, TriangleBlock>, limit: f32) -> ControlFlow<(), f32> {
+        if let Some(mut seen) = self.known.sheared.look::<P::Leaf>(&part, self.known.left, limit) {
+            while let Some(lane) = seen.next_lane() {
+                self.task.settle(self.framed, part.block, part.from + lane);
+            }
+        }
+        ControlFlow::Continue(self.framed.scale.box_limit(self.task.nearest.limit()))
+    }
+}
+
+struct Any {
     known: Known,
     /// Nearer than this is nearer than the limit.
     sure_to: f32,
     found: bool,
+    doubtful: Doubtful,
 }
 
 impl Task for AnyHit<'_> {
@@ -159,29 +248,17 @@ impl Task for AnyHit<'_> {
     #[inline(always)]
     fn run<P: Processor>(&mut self) -> bool {
         let mesh = self.mesh;
-        let Some(framed) = mesh.frame.enter(self.ray, self.limit) else { return false };
+        let Some(framed) = mesh.frame.enter::<P>(self.ray, self.is_unit, self.limit) else { return false };
         let limit = framed.scale.box_limit(self.limit);
         let known = Known::new(&framed, self.query, self.object);
-        let sure_to = limit * (1.0 - 4e-6) - 8e-6;
-        let mut any = Any { task: self, known, sure_to, found: false };
+        let sure_to = framed.scale.sure_limit(self.limit);
+        let mut any = Any { known, sure_to, found: false, doubtful: Doubtful::NONE };
         mesh.tree.walk::<P, _>(&framed, limit, &mut any);
-        any.found
+        any.found || any.doubtful.count > 0 && self.settle_all(&any.doubtful)
     }
 }
 
-impl AnyHit<'_> {
-    /// Asks double precision.
-    #[inline(always)]
-    fn settle(&mut self, block: &TriangleBlock, lane: usize, scale: RayScale) -> bool {
-        let candidate = Candidate { face: block.faces[lane], corners: &block.corners(lane) };
-        let exact = self.mesh.frame.exact(self.ray, scale);
-        let outward = |t| scale.outward(t);
-        let hit = self.mesh.settle(&exact, outward, self.query, self.object, &candidate, self.counters);
-        hit.is_some_and(|hit| hit.t < self.limit)
-    }
-}
-
-impl Visitor<TriangleBlock> for Any<'_, '_> {
+impl Visitor<TriangleBlock> for Any {
     const ORDERED: bool = false;
 
     #[inline(always)]
@@ -190,13 +267,70 @@ impl Visitor<TriangleBlock> for Any<'_, '_> {
             return ControlFlow::Continue(limit);
         };
         while let Some(lane) = seen.next_lane() {
-            let item = (part.from + lane) & (BLOCK - 1);
-            let surely = seen.certain >> lane & 1 == 1
-                && seen.near[lane] > self.known.sure_from
-                && seen.far[lane] < self.sure_to;
-            if surely || self.task.settle(part.block, item, self.known.scale) {
+            let (near, far) = (seen.near[lane], seen.far[lane]);
+            if far < self.known.passed {
+                continue;
+            }
+            if seen.certain >> lane & 1 == 1 && near > self.known.sure_from && far < self.sure_to {
                 self.found = true;
                 return ControlFlow::Break(());
+            }
+            let item = (part.from + lane) & (BLOCK - 1);
+            self.doubtful.put(part.index, item)?;
+        }
+        ControlFlow::Continue(limit)
+    }
+}
+
+impl AnyHit<'_> {
+    /// Settles what was put aside; everything, if that was too much.
+    #[cold]
+    #[inline(never)]
+    fn settle_all(&mut self, doubtful: &Doubtful) -> bool {
+        let framed = self.mesh.frame.enter::<Portable>(self.ray, self.is_unit, f64::INFINITY);
+        let framed = &framed.expect("it was there before");
+        match doubtful.items.get(..doubtful.count) {
+            Some(items) => items.iter().any(|&(block, item)| {
+                self.settle(framed, &self.mesh.tree.blocks()[block as usize], item as usize)
+            }),
+            None => {
+                let known = &Known::new(framed, self.query, self.object);
+                let tree = &self.mesh.tree;
+                tree.run(&mut Thorough { task: self, framed, known, found: false })
+            }
+        }
+    }
+
+    /// Asks double precision.
+    fn settle(&mut self, framed: &FrameRay, block: &TriangleBlock, item: usize) -> bool {
+        let candidate = Candidate { face: block.faces[item], corners: block.corners(item) };
+        let hit = self.mesh.settle(framed, self.query, self.object, &candidate, self.counters);
+        hit.is_some_and(|hit| hit.t < self.limit)
+    }
+}
+
+impl Task for Thorough<'_, AnyHit<'_>> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<P: Processor>(&mut self) -> bool {
+        let (mesh, limit) = (self.task.mesh, self.framed.scale.box_limit(self.task.limit));
+        mesh.tree.walk::<P, _>(self.framed, limit, self);
+        self.found
+    }
+}
+
+impl Visitor<TriangleBlock> for Thorough<'_, AnyHit<'_>> {
+    const ORDERED: bool = false;
+
+    #[inline(always)]
+    fn visit<P: Processor>(&mut self, part: Part<'_, TriangleBlock>, limit: f32) -> ControlFlow<(), f32> {
+        if let Some(mut seen) = self.known.sheared.look::<P::Leaf>(&part, self.known.left, limit) {
+            while let Some(lane) = seen.next_lane() {
+                if self.task.settle(self.framed, part.block, part.from + lane) {
+                    self.found = true;
+                    return ControlFlow::Break(());
+                }
             }
         }
         ControlFlow::Continue(limit)

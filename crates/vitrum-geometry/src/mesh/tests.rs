@@ -161,6 +161,18 @@ fn the_tree_finds_what_trying_every_triangle_finds() {
     }
 }
 
+/// Big trees are built in parts, by as many threads as there are: always the same tree.
+#[test]
+fn threads_have_no_say_in_the_tree() {
+    let data = bumpy_ball(32, 40);
+    let alone = TriangleMesh::new(&data).expect("valid mesh");
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().expect("three threads");
+    let together = pool.install(|| TriangleMesh::new(&data)).expect("valid mesh");
+    let faces = |mesh: &TriangleMesh| mesh.tree.blocks().iter().map(|block| block.faces).collect::<Vec<_>>();
+    assert_eq!(faces(&alone), faces(&together));
+    assert_eq!(format!("{:?}", alone.tree), format!("{:?}", together.tree));
+}
+
 /// No ray from inside a closed mesh gets out unseen, wherever it is aimed; seen from outside it enters as often as it
 /// leaves.
 #[test]

@@ -11,15 +11,15 @@
 //! between which two distances: the search goes on with these, and only the nearest is worked out in double precision, once,
 //! at the end.
 
-use crate::wide::{Axis, BLOCK, FrameRay, Lanes, NONE, Numbers, Part};
-use vitrum_math::{DVec3, Ray, Vec3};
+use crate::wide::{BLOCK, Doubles, ExactRay, FrameRay, Lanes, NONE, Numbers, Part, Portable, Processor, Row};
+use vitrum_math::{DVec3, Vec3};
 
 /// The corners of sixteen triangles, and which they are. Every row of numbers fills one line of the cache.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct TriangleBlock {
-    /// By corner, axis and triangle.
-    corners: [[[f32; BLOCK]; 3]; 3],
+    /// By corner, and then by axis and triangle.
+    corners: [[f32; 3 * BLOCK]; 3],
     /// [`NONE`] where there is no triangle.
     pub(crate) faces: Numbers,
 }
@@ -28,11 +28,11 @@ impl TriangleBlock {
     /// The triangles with these numbers.
     pub(crate) fn new(faces: Numbers, corners: impl Fn(u32) -> [Vec3; 3]) -> Self {
         // Places without a triangle: nothing compares with them.
-        let mut block = Self { corners: [[[f32::NAN; BLOCK]; 3]; 3], faces };
+        let mut block = Self { corners: [[f32::NAN; 3 * BLOCK]; 3], faces };
         for (lane, &face) in faces.iter().enumerate().filter(|(_, face)| **face != NONE) {
             for (corner, position) in corners(face).into_iter().enumerate() {
                 for axis in 0..3 {
-                    block.corners[corner][axis][lane] = position[axis];
+                    block.corners[corner][axis * BLOCK + lane] = position[axis];
                 }
             }
         }
@@ -40,26 +40,47 @@ impl TriangleBlock {
     }
 
     /// The corners of one.
-    #[inline(always)]
-    pub(crate) fn corners(&self, lane: usize) -> [DVec3; 3] {
-        // No closures here and below: they would be compiled for any processor.
-        let [a, b, c] = &self.corners;
-        [Self::corner(a, lane), Self::corner(b, lane), Self::corner(c, lane)]
+    pub(crate) fn corners(&self, lane: usize) -> Corners {
+        Corners([0, 1, 2].map(|axis| self.along(axis, lane)))
     }
 
+    /// The corners of one along an axis, then zero.
     #[inline(always)]
-    fn corner(axes: &[[f32; BLOCK]; 3], lane: usize) -> DVec3 {
-        DVec3::new(f64::from(axes[0][lane]), f64::from(axes[1][lane]), f64::from(axes[2][lane]))
+    fn along(&self, axis: usize, lane: usize) -> [f32; 4] {
+        let [a, b, c] = &self.corners;
+        let at = axis * BLOCK + lane;
+        [a[at], b[at], c[at], 0.0]
+    }
+}
+
+/// The corners of a triangle: by axis and corner, then zero.
+#[derive(Clone, Copy)]
+pub(crate) struct Corners([[f32; 4]; 3]);
+
+impl Corners {
+    #[cfg(test)]
+    pub(crate) fn new([a, b, c]: [Vec3; 3]) -> Self {
+        Self([0, 1, 2].map(|axis| [a[axis], b[axis], c[axis], 0.0]))
+    }
+
+    /// The points.
+    pub(crate) fn points(&self) -> [DVec3; 3] {
+        let [x, y, z] = &self.0;
+        [0, 1, 2].map(|corner| DVec3::new(f64::from(x[corner]), f64::from(y[corner]), f64::from(z[corner])))
     }
 }
 
 /// What the conservative test needs to know of a ray: the axis of its largest component, and the shear that lays it along
 /// that axis.
 pub(crate) struct Sheared {
-    axes: [Axis; 3],
-    origin: [f32; 3],
+    /// The axis of the ray's largest component last.
+    rows: [Row; 3],
+    /// What takes the ray's origin to zero, across the ray.
+    offset: [f32; 2],
     shear: [f32; 2],
+    /// What takes depths to distances: factor and offset.
     per_depth: f32,
+    depth_offset: f32,
 }
 
 /// Where a ray's line meets a triangle.
@@ -95,8 +116,8 @@ impl Seen {
     }
 }
 
-/// How wrong an edge function may be, in units of the frame times the length of the triangle: 4 · 7e-7 · √2 for displaced
-/// corners, 2 (7e-7)² on a triangle as long as 2^-22, and as much again for the roundings of the function itself.
+/// How wrong an edge function may be, in units of the frame times the length of the triangle: 2 · 8e-7 · √2 for displaced
+/// corners, (8e-7)² on a triangle as long as 2^-22, and 4e-7 for the roundings of the function itself; two thirds of this.
 const ERROR: f32 = 1.0 / (1 << 17) as f32;
 
 /// How far the roundings of the ray may move a point along it, in units of the frame.
@@ -106,18 +127,24 @@ impl Sheared {
     /// A ray that was advanced and rounded.
     #[inline(always)]
     pub(crate) fn new(ray: &FrameRay) -> Self {
-        let axes = ray.axes;
-        let [x, y, z] = [axes[0].index(), axes[1].index(), axes[2].index()];
+        let (rows, [x, y, z]) = (ray.exact.rows(), ray.exact.axes());
         let o = ray.origin.extend(0.0).to_array();
         let d = ray.direction.extend(0.0).to_array();
-        let r = ray.reciprocal.extend(0.0).to_array();
-        Self { axes, origin: [o[x], o[y], o[z]], shear: [d[x] * r[z], d[y] * r[z]], per_depth: -r[z] }
+        let per_depth = ray.reciprocal.extend(0.0).to_array()[z];
+        let shear = [d[x] * per_depth, d[y] * per_depth];
+        Self {
+            rows,
+            offset: [shear[0] * o[z] - o[x], shear[1] * o[z] - o[y]],
+            shear,
+            per_depth,
+            depth_offset: -o[z] * per_depth,
+        }
     }
 
     /// The triangles that the ray may meet before `limit`, except for the face that it leaves; `None` if it misses all of
     /// them for certain.
     ///
-    /// In a unit frame, the roundings of the ray and of the projection displace a projected corner by less than 7e-7. The
+    /// In a unit frame, the roundings of the ray and of the projection displace a projected corner by less than 8e-7. The
     /// corners of a triangle that is met lie within √2 `reach` of the ray there, so an edge function is wrong by less than
     /// e = [`ERROR`] `reach`. Where the functions sum to S, at least 6 e in magnitude, the true sum is no less than S / 2,
     /// and the weights are wrong by 12 e / |S| in all; they weigh distances that lie within `reach` of their middle. Where S
@@ -137,15 +164,15 @@ impl Sheared {
         let (least, most) = (u.min(v).min(w), u.max(v).max(w));
         let e = L::splat(part.reach * ERROR);
         // Misses where one is surely negative and another surely positive.
-        let crossed =
-            L::splat(0.0).sub(least).min(most).at_most(e) & !L::equal(left, &part.block.faces[part.from..]);
+        let crossed = (L::splat(part.reach * -ERROR).at_most(least) | most.at_most(e))
+            & L::others(left, &part.block.faces[part.from..]);
         if crossed == 0 {
             return None;
         }
 
         let per_sum = L::splat(1.0).div(u.add(v).add(w));
         let depth = u.mul_add(a[2], v.mul_add(b[2], w.mul(c[2])));
-        let t = depth.mul(per_sum).mul(L::splat(self.per_depth));
+        let t = depth.mul(per_sum).mul_add(L::splat(self.per_depth), L::splat(self.depth_offset));
         // 24 e `reach` / |S|, in an order that leaves nothing to be worked out before it is known to be needed.
         let slack = per_sum.abs().mul(e).mul(e).mul_add(L::splat(24.0 / ERROR), L::splat(DEPTH_PAD));
         let (near, far) = (t.sub(slack), t.add(slack));
@@ -162,13 +189,13 @@ impl Sheared {
         Some(seen)
     }
 
-    /// From a corner to the ray, across it, twice, and along it.
+    /// A corner as the ray sees it, across, twice, from the ray, and along.
     #[inline(always)]
-    fn project<L: Lanes>(&self, corners: &[[f32; BLOCK]; 3], from: usize) -> [L; 3] {
-        let [x, y, z] = self.axes;
-        let x = L::splat(self.origin[0]).sub(L::load(&corners[x.index()][from..]));
-        let y = L::splat(self.origin[1]).sub(L::load(&corners[y.index()][from..]));
-        let z = L::splat(self.origin[2]).sub(L::load(&corners[z.index()][from..]));
+    fn project<L: Lanes>(&self, corners: &[f32; 3 * BLOCK], from: usize) -> [L; 3] {
+        let [x, y, z] = self.rows;
+        let x = L::load(&corners[x.start()..][from..]).add(L::splat(self.offset[0]));
+        let y = L::load(&corners[y.start()..][from..]).add(L::splat(self.offset[1]));
+        let z = L::load(&corners[z.start()..][from..]);
         [z.negated_mul_add(L::splat(self.shear[0]), x), z.negated_mul_add(L::splat(self.shear[1]), y), z]
     }
 }
@@ -179,64 +206,67 @@ fn edge<L: Lanes>(p: [L; 3], q: [L; 3]) -> L {
 }
 
 /// The triangle laid along the ray, in double precision.
-struct Laid {
+struct Laid<D> {
     /// Edge functions.
-    edges: [f64; 3],
+    edges: D,
     /// Their sum: twice the area that the ray sees.
     sum: f64,
-    /// The corners from the ray's origin.
-    relative: [DVec3; 3],
+    /// The corners along the axis of the projection, from the ray's origin.
+    depths: D,
+    /// The ray along that axis.
+    advance: f64,
 }
 
-impl Laid {
+impl<D: Doubles> Laid<D> {
+    /// From the corners along the axes of the ray.
     #[inline(always)]
-    fn new(ray: &Ray, [a, b, c]: &[DVec3; 3]) -> Self {
-        let d = ray.direction.to_array();
-        let [x, y, z] = Axis::towards_largest(d[0].abs(), d[1].abs(), d[2].abs());
-        let [x, y, z] = [x.index(), y.index(), z.index()];
-        let shear = [d[x] / d[z], d[y] / d[z]];
-        let relative = [*a - ray.origin, *b - ray.origin, *c - ray.origin];
-        let [a, b, c] = [relative[0].to_array(), relative[1].to_array(), relative[2].to_array()];
-        let a = [a[x] - shear[0] * a[z], a[y] - shear[1] * a[z]];
-        let b = [b[x] - shear[0] * b[z], b[y] - shear[1] * b[z]];
-        let c = [c[x] - shear[0] * c[z], c[y] - shear[1] * c[z]];
-        let edges = [c[0] * b[1] - c[1] * b[0], a[0] * c[1] - a[1] * c[0], b[0] * a[1] - b[1] * a[0]];
-        Self { edges, sum: edges[0] + edges[1] + edges[2], relative }
+    fn new(ray: &ExactRay, corners: [[f32; 4]; 3]) -> Self {
+        let [x, y, z] = ray.axes();
+        let (o, d) = (&ray.origin, &ray.direction);
+        let depths = D::widen(corners[2]).sub(D::splat(o[z]));
+        let across = D::widen(corners[0]).sub(D::splat(o[x])).sub(D::splat(d[x] / d[z]).mul(depths));
+        let up = D::widen(corners[1]).sub(D::splat(o[y])).sub(D::splat(d[y] / d[z]).mul(depths));
+        // Of each corner's opposite edge, from its end to its beginning.
+        let end = across.turned_right().mul(up.turned_left());
+        let edges = end.sub(up.turned_right().mul(across.turned_left()));
+        let [u, v, w, _] = edges.numbers();
+        Self { edges, sum: u + v + w, depths, advance: d[z] }
     }
 
     /// Where the ray's line meets the triangle's plane.
     #[inline(always)]
-    fn met(&self, d: DVec3) -> Met {
-        let [u, v, w] = self.edges;
-        let (u, v, w) = (u / self.sum, v / self.sum, w / self.sum);
-        let p = self.relative[0] * u + self.relative[1] * v + self.relative[2] * w;
-        Met { t: p.dot(d) / d.dot(d), barycentrics: [v, w] }
+    fn met(self) -> Met {
+        let [a, b, c, _] = self.edges.mul(self.depths).numbers();
+        let [_, v, w, _] = self.edges.div(D::splat(self.sum)).numbers();
+        Met { t: (a + b + c) / (self.sum * self.advance), barycentrics: [v, w] }
     }
 }
 
 /// Where the ray's line meets the triangle, border included, from either side; `None` when it misses, or sees the triangle
 /// exactly edge on: then it meets the neighbours instead.
-#[inline(always)]
-pub(crate) fn meet(ray: &Ray, corners: &[DVec3; 3]) -> Option<Met> {
-    let laid = Laid::new(ray, corners);
-    let [u, v, w] = laid.edges;
+pub(crate) fn meet(ray: &ExactRay, corners: &Corners) -> Option<Met> {
+    let corners = ray.axes().map(|axis| corners.0[axis]);
+    let laid = Laid::<<Portable as Processor>::Exact>::new(ray, corners);
+    let [u, v, w, _] = laid.edges.numbers();
     if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) || laid.sum == 0.0 {
         return None;
     }
-    Some(laid.met(ray.direction))
+    Some(laid.met())
 }
 
-/// The same for a triangle that the ray is known to meet.
+/// The same for a triangle of a block that the ray is known to meet.
 #[inline(always)]
-pub(crate) fn meet_for_certain(ray: &Ray, corners: &[DVec3; 3]) -> Met {
-    Laid::new(ray, corners).met(ray.direction)
+pub(crate) fn meet_for_certain<D: Doubles>(ray: &ExactRay, block: &TriangleBlock, lane: usize) -> Met {
+    // No closure: it would be compiled for any processor.
+    let [x, y, z] = ray.axes();
+    Laid::<D>::new(ray, [block.along(x, lane), block.along(y, lane), block.along(z, lane)]).met()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::wide::{Isa, Processor, Task, UnitFrame};
-    use vitrum_math::{Bounds, unit};
+    use crate::wide::{Isa, Task, UnitFrame};
+    use vitrum_math::{Bounds, Ray, unit};
     use vitrum_testkit::Uniform;
 
     const CORNERS: [Vec3; 3] = [Vec3::new(0.0, 0.0, 0.5), Vec3::new(0.5, 0.0, 0.5), Vec3::new(0.0, 0.5, 0.5)];
@@ -281,6 +311,11 @@ mod tests {
         UnitFrame::around(&Bounds::around([DVec3::splat(-0.49), DVec3::splat(0.49)]))
     }
 
+    /// A ray that starts there.
+    fn framed(ray: &Ray) -> FrameRay {
+        frame().enter::<Portable>(ray, false, f64::INFINITY).expect("it starts in the frame")
+    }
+
     fn look_at(
         isa: Isa,
         ray: &Ray,
@@ -288,8 +323,8 @@ mod tests {
         lane: usize,
         limit: f32,
     ) -> Option<(bool, f32, f32)> {
-        let sheared = Sheared::new(&frame().enter(ray, f64::INFINITY).expect("it starts in the frame"));
-        let [a, b, c] = block.corners(lane);
+        let sheared = Sheared::new(&framed(ray));
+        let [a, b, c] = block.corners(lane).points();
         let reach = a.max(b).max(c) - a.min(b).min(c);
         let reach = (reach.length() as f32).max(1.0 / (1 << 22) as f32);
         isa.run(&mut Look { sheared: &sheared, block, lane, reach, limit })
@@ -301,8 +336,12 @@ mod tests {
         found[0].is_some()
     }
 
+    fn meet_triangle(ray: &Ray, corners: &Corners) -> Option<Met> {
+        super::meet(&framed(ray).exact, corners)
+    }
+
     fn meet(ray: &Ray) -> Option<Met> {
-        super::meet(ray, &corners())
+        meet_triangle(ray, &Corners::new(CORNERS))
     }
 
     #[test]
@@ -357,14 +396,15 @@ mod tests {
             let mut faces = [NONE; BLOCK];
             faces[lane] = 1;
             let block = TriangleBlock::new(faces, |_| corners);
-            let exact = block.corners(lane);
+            let triangle = block.corners(lane);
+            let exact = triangle.points();
             // From a point of an edge, or of the inside, a little away.
             let [u, v] = [number() + 0.5, if i % 3 == 0 { number() + 0.5 } else { 0.0 }];
             let on_it = exact[0] + (exact[1] - exact[0]) * u + (exact[2] - exact[0]) * (v * (1.0 - u));
             let target = on_it + DVec3::new(number(), number(), number()) * (0.1f64.powi(i % 17) * size);
             let origin = DVec3::new(number(), number(), number());
             let ray = Ray::new(origin, unit(target - origin));
-            let expected = super::meet(&ray, &exact);
+            let expected = meet_triangle(&ray, &triangle);
             for &isa in Isa::all() {
                 let seen = look_at(isa, &ray, &block, lane, f32::INFINITY);
                 if let Some(Met { t, .. }) = expected

@@ -2,12 +2,12 @@
 
 use super::MeshData;
 use super::search::{AnyHit, ClosestHit};
-use super::triangle::{TriangleBlock, meet};
+use super::triangle::{Corners, TriangleBlock, meet};
 use crate::aggregate::{Counters, Hit, Nearest};
 use crate::departure::{Departure, Query};
+use crate::wide::{Build, FrameRay, Items, UnitFrame, WideTree};
 #[cfg(test)]
-use crate::wide::Isa;
-use crate::wide::{Build, Items, UnitFrame, WideTree};
+use crate::wide::{Isa, Portable};
 use vitrum_math::{Bounds, DVec3, Ray, Vec3, gamma};
 
 /// Triangles in a unit frame of their own (single precision), with the tree that finds them.
@@ -70,10 +70,10 @@ pub enum MeshError {
 }
 
 /// A triangle that may be hit.
-pub(super) struct Candidate<'c> {
+pub(super) struct Candidate {
     pub(super) face: u32,
     /// In the unit frame.
-    pub(super) corners: &'c [DVec3; 3],
+    pub(super) corners: Corners,
 }
 
 /// A point of a mesh in its own frame.
@@ -96,7 +96,8 @@ impl TriangleMesh {
         Self::with_build(data, Build::default())
     }
 
-    /// The same with more or less time for the tree.
+    /// The same with more or less time for the tree. The parts of big ones (more than 131072 triangles) are built in parallel
+    /// when this is called from within a pool of threads of rayon; the tree is the same.
     ///
     /// # Errors
     /// As for [`new`](Self::new).
@@ -216,7 +217,7 @@ impl TriangleMesh {
         nearest: &mut Nearest,
         counters: &mut Counters,
     ) {
-        self.tree.run(&mut ClosestHit { mesh: self, ray, query, object, nearest, counters });
+        self.tree.run(&mut ClosestHit { mesh: self, ray, is_unit: false, query, object, nearest, counters });
     }
 
     /// True when some triangle counts and lies nearer than `limit`.
@@ -229,7 +230,7 @@ impl TriangleMesh {
         limit: f64,
         counters: &mut Counters,
     ) -> bool {
-        self.tree.run(&mut AnyHit { mesh: self, ray, query, object, limit, counters })
+        self.tree.run(&mut AnyHit { mesh: self, ray, is_unit: false, query, object, limit, counters })
     }
 
     /// The same mesh, searched with these instructions.
@@ -242,44 +243,38 @@ impl TriangleMesh {
     /// tested against.
     #[cfg(test)]
     pub(crate) fn closest_of_all(&self, ray: &Ray, query: &Query, nearest: &mut Nearest) {
-        let Some(framed) = self.frame.enter(ray, f64::INFINITY) else { return };
-        let exact = self.frame.exact(ray, framed.scale);
+        let Some(framed) = self.frame.enter::<Portable>(ray, false, f64::INFINITY) else { return };
         for face in 0..self.triangles.len() as u32 {
-            let corners = self.corners(face).map(|c| c.as_dvec3());
-            let candidate = Candidate { face, corners: &corners };
-            let to_world = |t| framed.scale.outward(t);
-            let hit = self.settle(&exact, to_world, query, 0, &candidate, &mut Counters::default());
-            if let Some(hit) = hit {
+            let candidate = Candidate { face, corners: Corners::new(self.corners(face)) };
+            if let Some(hit) = self.settle(&framed, query, 0, &candidate, &mut Counters::default()) {
                 nearest.offer(hit);
             }
         }
     }
 
-    /// Tests one triangle in double precision and asks whether it counts. `ray` is exact, in the unit frame; `outward` takes
-    /// its `t` to that of the query.
-    #[inline(always)]
+    /// Tests one triangle in double precision and asks whether it counts.
     pub(super) fn settle(
         &self,
-        ray: &Ray,
-        outward: impl Fn(f64) -> f64,
+        ray: &FrameRay,
         query: &Query,
         object: u32,
-        &Candidate { face, corners }: &Candidate<'_>,
+        &Candidate { face, ref corners }: &Candidate,
         counters: &mut Counters,
     ) -> Option<Hit> {
         let departed = query.departed_from(object);
         if departed.is_some_and(|d| d.face == face) {
             return None;
         }
-        let met = meet(ray, corners)?;
-        let mut t = outward(met.t);
+        let met = meet(&ray.exact, corners)?;
+        let mut t = ray.scale.outward(met.t);
         if let Some(departed) = departed {
             // A neighbour within the rounding error of the origin. Whether it seems to lie before or behind says nothing.
+            let corners = &corners.points();
             let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-            let along = ray.direction.dot(normal);
+            let along = ray.exact.along().dot(normal);
             let distance = (met.t * along).abs() / normal.dot(normal).sqrt();
             if distance <= departed.error {
-                if !self.goes_through_neighbour(departed, ray.origin, corners, along < 0.0) {
+                if !self.goes_through_neighbour(departed, ray.exact.from(), corners, along < 0.0) {
                     counters.neighbours_ignored += 1;
                     return None;
                 }
@@ -294,7 +289,6 @@ impl TriangleMesh {
     /// Where the two faces meet like those of a convex solid, only a ray that is inside can cross the neighbour, on its way
     /// out; where they meet like the walls of a corner, only one that is outside, on its way in. Anything else is the rounding
     /// of the origin.
-    #[inline(always)]
     fn goes_through_neighbour(
         &self,
         left: &Departure,

@@ -3,18 +3,18 @@
 //! The same rules as in [`avx2`](super::avx2).
 #![allow(unsafe_code)]
 
-use super::avx2::Eight;
+use super::avx2::{Eight, Four};
 use super::isa::Task;
 use super::lanes::{Lanes, Processor};
 use std::arch::x86_64::{
-    __m512, _CMP_LE_OQ, _mm512_abs_ps, _mm512_add_ps, _mm512_cmp_ps_mask, _mm512_cmpeq_epi32_mask,
+    __m512, _CMP_LE_OQ, _mm512_abs_ps, _mm512_add_ps, _mm512_cmp_ps_mask, _mm512_cmpneq_epi32_mask,
     _mm512_div_ps, _mm512_fmadd_ps, _mm512_fmsub_ps, _mm512_fnmadd_ps, _mm512_loadu_ps, _mm512_loadu_si512,
     _mm512_max_ps, _mm512_min_ps, _mm512_mul_ps, _mm512_set1_epi32, _mm512_set1_ps, _mm512_storeu_ps,
     _mm512_sub_ps,
 };
 
 /// Does the work with these instructions.
-#[target_feature(enable = "avx2,fma,avx512f,avx512dq,avx512vl")]
+#[target_feature(enable = "avx2,fma,bmi1,avx512f,avx512dq,avx512vl")]
 pub(super) fn run<T: Task>(task: &mut T) -> T::Output {
     task.run::<Avx512>()
 }
@@ -24,6 +24,7 @@ struct Avx512;
 impl Processor for Avx512 {
     type Node = Eight;
     type Leaf = Sixteen;
+    type Exact = Four;
 }
 
 /// A register of sixteen.
@@ -106,12 +107,12 @@ impl Lanes for Sixteen {
         u32::from(unsafe { _mm512_cmp_ps_mask::<_CMP_LE_OQ>(self.0, other.0) })
     }
     #[inline(always)]
-    fn equal(number: u32, to: &[u32]) -> u32 {
-        let sixteen: &[u32; 16] = to.first_chunk().expect("sixteen numbers");
+    fn others(number: u32, among: &[u32]) -> u32 {
+        let sixteen: &[u32; 16] = among.first_chunk().expect("sixteen numbers");
         // SAFETY: the processor has AVX-512, and sixteen numbers stand at this address.
         u32::from(unsafe {
-            let to = _mm512_loadu_si512(sixteen.as_ptr().cast());
-            _mm512_cmpeq_epi32_mask(to, _mm512_set1_epi32(number.cast_signed()))
+            let among = _mm512_loadu_si512(sixteen.as_ptr().cast());
+            _mm512_cmpneq_epi32_mask(among, _mm512_set1_epi32(number.cast_signed()))
         })
     }
 }

@@ -20,19 +20,21 @@ type Costs = [f32; WIDTH - 1];
 struct Collapse<'b> {
     binary: &'b Bvh2,
     items: Items,
-    costs: Vec<Costs>,
-    /// Items below each binary node.
-    sizes: Vec<u32>,
+    /// Of each inner node, under the number of its pair of children; leaves are many and their costs soon counted.
+    inner: Vec<Inner>,
+}
+
+#[derive(Clone, Copy)]
+struct Inner {
+    costs: Costs,
+    /// Items below.
+    size: u32,
 }
 
 /// `None` if there are more blocks than can be numbered.
 pub(super) fn collapse(binary: &Bvh2, items: Items) -> Option<WideTree<Numbers>> {
-    let mut collapse = Collapse {
-        binary,
-        items,
-        costs: vec![[0.0; WIDTH - 1]; binary.nodes.len()],
-        sizes: vec![0; binary.nodes.len()],
-    };
+    let none = Inner { costs: [0.0; WIDTH - 1], size: 0 };
+    let mut collapse = Collapse { binary, items, inner: vec![none; binary.nodes.len() / 2] };
     collapse.count_costs();
     collapse.lay_out()
 }
@@ -47,35 +49,46 @@ impl Collapse<'_> {
         self.binary.nodes[node].aabb().half_area()
     }
 
+    /// Where an inner node with these children keeps its costs: pairs begin at odd numbers, after the root.
+    fn pair([left, _]: [usize; 2]) -> usize {
+        debug_assert!(left % 2 == 1);
+        left / 2
+    }
+
+    /// Costs of a node, and the items below.
+    fn counted(&self, node: usize) -> Inner {
+        match self.children(node) {
+            Some(children) => self.inner[Self::pair(children)],
+            None => {
+                let size = self.binary.nodes[node].prim_count;
+                Inner { costs: [self.leaf_cost(node, size); WIDTH - 1], size }
+            }
+        }
+    }
+
     /// From the leaves up.
     fn count_costs(&mut self) {
         // Children stand after their parents here, whatever their order in memory.
-        let mut order = Vec::with_capacity(self.binary.nodes.len());
+        let mut order: Vec<u32> = Vec::with_capacity(self.inner.len());
         let mut open = vec![0];
         while let Some(node) = open.pop() {
-            order.push(node);
             if let Some(children) = self.children(node) {
+                order.push(node as u32);
                 open.extend(children);
             }
         }
         for &node in order.iter().rev() {
-            match self.children(node) {
-                None => {
-                    let count = self.binary.nodes[node].prim_count;
-                    self.sizes[node] = count;
-                    self.costs[node] = [self.leaf_cost(node, count); WIDTH - 1];
-                }
-                Some([left, right]) => {
-                    self.sizes[node] = self.sizes[left] + self.sizes[right];
-                    let (left, right) = (self.costs[left], self.costs[right]);
-                    let inner = self.half_area(node) + split(&left, &right, WIDTH).0;
-                    let mut costs = [inner.min(self.leaf_cost(node, self.sizes[node])); WIDTH - 1];
-                    for roots in 2..WIDTH {
-                        costs[roots - 1] = costs[roots - 2].min(split(&left, &right, roots).0);
-                    }
-                    self.costs[node] = costs;
-                }
+            let node = node as usize;
+            let Some([left, right]) = self.children(node) else { continue };
+            let (left_below, right_below) = (self.counted(left), self.counted(right));
+            let size = left_below.size + right_below.size;
+            let both = (&left_below.costs, &right_below.costs);
+            let inner = self.half_area(node) + split(both.0, both.1, WIDTH).0;
+            let mut costs = [inner.min(self.leaf_cost(node, size)); WIDTH - 1];
+            for roots in 2..WIDTH {
+                costs[roots - 1] = costs[roots - 2].min(split(both.0, both.1, roots).0);
             }
+            self.inner[Self::pair([left, right])] = Inner { costs, size };
         }
     }
 
@@ -96,15 +109,16 @@ impl Collapse<'_> {
         let mut tree = WideTree { nodes: vec![Node::EMPTY], blocks: Vec::new(), depth: 0, isa: Isa::best() };
         // Binary subtrees that wait to become wide nodes: where, and how deep.
         let mut open = vec![(0usize, 0usize, 1usize)];
+        let mut roots = Vec::with_capacity(WIDTH);
         while let Some((binary, wide, depth)) = open.pop() {
             tree.depth = tree.depth.max(depth);
-            let mut roots = Vec::with_capacity(WIDTH);
+            roots.clear();
             match self.children(binary) {
                 // A root that is a leaf already.
                 None => roots.push(binary),
                 Some(_) if binary == 0 && self.is_leaf(binary) => roots.push(binary),
                 Some([left, right]) => {
-                    let (_, to_left) = split(&self.costs[left], &self.costs[right], WIDTH);
+                    let (_, to_left) = split(&self.counted(left).costs, &self.counted(right).costs, WIDTH);
                     self.forest(left, to_left, &mut roots);
                     self.forest(right, WIDTH - to_left, &mut roots);
                 }
@@ -116,7 +130,7 @@ impl Collapse<'_> {
                         return None;
                     }
                     let longest = self.fill_blocks(root, &mut tree.blocks);
-                    Child::leaf(first, (self.sizes[root] as usize).div_ceil(HALF), longest)
+                    Child::leaf(first, (self.counted(root).size as usize).div_ceil(HALF), longest)
                 } else {
                     tree.nodes.push(Node::EMPTY);
                     open.push((root, tree.nodes.len() - 1, depth + 1));
@@ -132,17 +146,18 @@ impl Collapse<'_> {
 
     /// Whether the subtree costs least as one leaf.
     fn is_leaf(&self, node: usize) -> bool {
-        self.children(node).is_none() || self.leaf_cost(node, self.sizes[node]) <= self.costs[node][0]
+        let Inner { costs, size } = self.counted(node);
+        self.children(node).is_none() || self.leaf_cost(node, size) <= costs[0]
     }
 
     /// The roots of the cheapest forest of at most `roots` subtrees.
     fn forest(&self, node: usize, roots: usize, into: &mut Vec<usize>) {
-        let costs = &self.costs[node];
+        let costs = self.counted(node).costs;
         // As few as cost no more.
         let roots = (1..=roots).find(|&fewer| costs[fewer - 1] <= costs[roots - 1]).unwrap_or(roots);
         match self.children(node) {
             Some([left, right]) if roots > 1 => {
-                let (_, to_left) = split(&self.costs[left], &self.costs[right], roots);
+                let (_, to_left) = split(&self.counted(left).costs, &self.counted(right).costs, roots);
                 self.forest(left, to_left, into);
                 self.forest(right, roots - to_left, into);
             }

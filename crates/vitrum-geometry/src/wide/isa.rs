@@ -7,7 +7,7 @@ use super::lanes::{Portable, Processor};
 pub(crate) enum Isa {
     /// Any processor.
     Portable,
-    /// AVX2 and FMA.
+    /// AVX2, FMA and BMI1, which came together.
     #[cfg(target_arch = "x86_64")]
     Avx2,
     /// The same and AVX-512 F, DQ and VL.
@@ -36,7 +36,10 @@ impl Isa {
     /// All that this processor has, the best last.
     pub(crate) fn all() -> &'static [Self] {
         #[cfg(target_arch = "x86_64")]
-        if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+        if is_x86_feature_detected!("avx2")
+            && is_x86_feature_detected!("fma")
+            && is_x86_feature_detected!("bmi1")
+        {
             let avx512 = is_x86_feature_detected!("avx512f")
                 && is_x86_feature_detected!("avx512dq")
                 && is_x86_feature_detected!("avx512vl");

@@ -6,7 +6,7 @@
 //! traversal finds every item whose bounds the exact ray meets, and neither the shape of the tree nor the instructions that
 //! walk it have a say in what is hit.
 //!
-//! obvhs builds a binary tree (PLOC with reinsertion; D. Meister and J. Bittner, Parallel Locally-Ordered Clustering for
+//! obvhs builds a binary tree, big ones in [`parts`] (PLOC with reinsertion; D. Meister and J. Bittner, Parallel Locally-Ordered Clustering for
 //! Bounding Volume Hierarchy Construction, 2018), [`collapse`] makes it wide, [`walk`](WideTree::walk) traverses it with
 //! the [`Lanes`] of the processor.
 
@@ -18,14 +18,16 @@ mod collapse;
 mod frame;
 mod isa;
 mod lanes;
+mod parts;
 mod traverse;
 
-pub(crate) use frame::{Axis, FrameRay, RayScale, UnitFrame};
+pub(crate) use frame::{ExactRay, FrameRay, Row, UnitFrame};
 pub(crate) use isa::{Isa, Task};
-pub(crate) use lanes::{Lanes, Processor};
+pub(crate) use lanes::{Doubles, Lanes, Portable, Processor};
 pub(crate) use traverse::{Part, Visitor};
 
 use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
 use obvhs::{Boundable, BvhBuildParams};
 use std::time::Duration;
 use vitrum_math::Vec3;
@@ -57,6 +59,9 @@ impl Build {
 /// Padding of every box, in units of the frame.
 const PAD: f32 = 2e-6;
 
+/// Trees over more items are built in parts.
+const MANY: usize = if cfg!(test) { 1000 } else { 1 << 17 };
+
 /// Children of a node.
 const WIDTH: usize = 8;
 
@@ -68,8 +73,8 @@ const HALF: usize = BLOCK / 2;
 
 /// What a slot of a node leads to: the number of a node, or bits of a leaf.
 ///
-/// From the highest bit: one for a leaf; five for its reach, as a power of two; three for the number of halves of blocks; the
-/// number of the first block.
+/// From the highest bit: one for a leaf; three for the number of halves of blocks; five for its reach, as a power of two,
+/// where the exponent of a float stands; the number of the first block.
 #[derive(Clone, Copy, Debug)]
 struct Child(u32);
 
@@ -92,10 +97,10 @@ struct Leaf {
 
 impl Child {
     const LEAF: u32 = 1 << 31;
-    const REACH: u32 = 26;
-    const HALVES: u32 = 23;
+    const HALVES: u32 = 28;
+    const REACH: u32 = 23;
     /// Blocks are at most so many: enough for a hundred million triangles.
-    const BLOCKS: usize = 1 << Self::HALVES;
+    const BLOCKS: usize = 1 << Self::REACH;
     /// The exponent (biased, as in a float) of the smallest reach.
     const SMALLEST: u32 = 127 - 22;
 
@@ -119,15 +124,15 @@ impl Child {
             Kind::Leaf(Leaf {
                 first: self.0 as usize & (Self::BLOCKS - 1),
                 halves: 1 + (self.0 >> Self::HALVES & 7) as usize,
-                reach: f32::from_bits(((self.0 >> Self::REACH & 31) + Self::SMALLEST) << 23),
+                reach: f32::from_bits((self.0 & 31 << Self::REACH) + (Self::SMALLEST << Self::REACH)),
             })
         }
     }
 }
 
-/// Eight boxes.
+/// Eight boxes. Four lines of the cache, so that no row lies across two and an address is a shift away.
 #[derive(Clone, Debug)]
-#[repr(C, align(32))]
+#[repr(C, align(256))]
 struct Node {
     /// By axis, and by child the lower and then the upper sides.
     bounds: [[f32; 2 * WIDTH]; 3],
@@ -199,16 +204,24 @@ impl WideTree<Numbers> {
         if boxes.is_empty() {
             return Some(Self { nodes: vec![Node::EMPTY], blocks: Vec::new(), depth: 1, isa: Isa::best() });
         }
-        let binary = obvhs::bvh2::builder::build_bvh2(&boxes, build.parameters(), &mut Duration::default());
+        let binary =
+            if boxes.len() > MANY { parts::build(&boxes, build) } else { build_at_once(&boxes, build) };
         collapse::collapse(&binary, items)
     }
 }
 
+fn build_at_once(boxes: &[Item], build: Build) -> Bvh2 {
+    obvhs::bvh2::builder::build_bvh2(boxes, build.parameters(), &mut Duration::default())
+}
+
 impl<B> WideTree<B> {
     /// The same tree with something else in its blocks.
-    pub(crate) fn map<C>(self, block: impl FnMut(B) -> C) -> WideTree<C> {
+    pub(crate) fn map<C: Send>(self, block: impl Fn(B) -> C + Sync + Send) -> WideTree<C>
+    where
+        B: Send,
+    {
         let Self { nodes, blocks, depth, isa } = self;
-        WideTree { nodes, blocks: blocks.into_iter().map(block).collect(), depth, isa }
+        WideTree { nodes, blocks: parts::each(blocks, block), depth, isa }
     }
 
     /// All blocks.

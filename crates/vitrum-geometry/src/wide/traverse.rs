@@ -74,7 +74,7 @@ impl<B> WideTree<B> {
         let mut stack = Stack::new(if self.depth <= SHALLOW {
             &mut shallow.0
         } else {
-            deep = vec![MaybeUninit::uninit(); self.depth * (WIDTH - 1) + 1];
+            deep = self.deep_stack();
             &mut deep
         });
         let slabs = Slabs::<P::Node>::new(ray);
@@ -83,8 +83,8 @@ impl<B> WideTree<B> {
             match current.kind() {
                 Kind::Node(index) => {
                     let node = self.node(index);
-                    let (enter, exit) = slabs.cut(node);
-                    let met = enter.at_most(exit.min(P::Node::splat(limit)));
+                    let (enter, exit) = slabs.cut(node, limit);
+                    let met = enter.at_most(exit);
                     if met != 0 {
                         current = stack.descend(node, enter, met, V::ORDERED);
                         continue;
@@ -113,6 +113,13 @@ impl<B> WideTree<B> {
                 }
             }
         }
+    }
+
+    // Far from the loop, which is to have the registers for itself.
+    #[cold]
+    #[inline(never)]
+    fn deep_stack(&self) -> Vec<MaybeUninit<Waiting>> {
+        vec![MaybeUninit::uninit(); self.depth * (WIDTH - 1) + 1]
     }
 
     #[inline(always)]
@@ -249,36 +256,54 @@ fn first_of(mask: u32) -> usize {
 struct Slabs<L> {
     reciprocal: [L; 3],
     offset: [L; 3],
-    /// Where in a node's bounds of an axis the sides begin that the ray enters by: 0, or [`WIDTH`] for the upper ones.
-    near: [usize; 3],
+    /// Where in a node's bounds of each axis the sides begin that the ray enters by, and then those that it leaves by.
+    sides: &'static [[usize; 3]; 2],
 }
+
+/// The sides for every combination of signs: 0 are the lower ones, [`WIDTH`] the upper ones.
+const SIDES: [[[usize; 3]; 2]; 8] = {
+    let mut all = [[[0; 3]; 2]; 8];
+    let mut signs = 0;
+    while signs < 8 {
+        let mut axis = 0;
+        while axis < 3 {
+            all[signs][1 - (signs >> axis & 1)][axis] = WIDTH;
+            axis += 1;
+        }
+        signs += 1;
+    }
+    all
+};
 
 impl<L: Lanes> Slabs<L> {
     #[inline(always)]
     fn new(ray: &FrameRay) -> Self {
         let (r, o) = (ray.reciprocal, -ray.origin * ray.reciprocal);
-        let signs = r.is_negative_bitmask() as usize;
         Self {
             reciprocal: [L::splat(r.x), L::splat(r.y), L::splat(r.z)],
             offset: [L::splat(o.x), L::splat(o.y), L::splat(o.z)],
-            near: [signs << 3 & WIDTH, signs << 2 & WIDTH, signs << 1 & WIDTH],
+            sides: &SIDES[r.is_negative_bitmask() as usize & 7],
         }
     }
 
-    /// Where the ray enters the boxes of a node, not before it starts, and where it leaves them.
+    /// Where the ray enters the boxes of a node, not before it starts, and where it leaves them, or ends.
     #[inline(always)]
-    fn cut(&self, node: &Node) -> (L, L) {
-        let [x, y, z] = self.near;
+    fn cut(&self, node: &Node, limit: f32) -> (L, L) {
+        let [[x, y, z], [far_x, far_y, far_z]] = *self.sides;
         let enter =
             self.along(node, 0, x).max(self.along(node, 1, y)).max(self.along(node, 2, z).max(L::splat(0.0)));
-        let [x, y, z] = [x ^ WIDTH, y ^ WIDTH, z ^ WIDTH];
-        let exit = self.along(node, 0, x).min(self.along(node, 1, y)).min(self.along(node, 2, z));
+        let exit = self
+            .along(node, 0, far_x)
+            .min(self.along(node, 1, far_y))
+            .min(self.along(node, 2, far_z).min(L::splat(limit)));
         (enter, exit)
     }
 
     #[inline(always)]
+    #[allow(unsafe_code)]
     fn along(&self, node: &Node, axis: usize, sides: usize) -> L {
-        let sides = &node.bounds[axis][sides & WIDTH..];
-        L::load(sides).mul_add(self.reciprocal[axis], self.offset[axis])
+        // SAFETY: there are no others in `SIDES`.
+        unsafe { std::hint::assert_unchecked(sides <= WIDTH) };
+        L::load(&node.bounds[axis][sides..]).mul_add(self.reciprocal[axis], self.offset[axis])
     }
 }
