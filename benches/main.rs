@@ -5,6 +5,7 @@ mod intersect;
 mod measure;
 mod pixel;
 mod query;
+mod rays;
 mod refraction;
 mod sampler;
 mod scattering;
