@@ -75,7 +75,7 @@ fn triangles(criterion: &mut Criterion) {
     let corner = |x, z| DVec3::new(x, 0.0, z) * 0.9;
     let positions = vec![corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)];
     let data = MeshData { positions, triangles: vec![[0, 1, 2], [0, 2, 3]], ..MeshData::default() };
-    let mesh = Shape::Mesh(Arc::new(TriangleMesh::new(&data).expect("the mesh is valid")));
+    let mesh = Shape::Mesh(Arc::new(TriangleMesh::new(data).expect("the mesh is valid")));
     let object = Object::new(mesh, &Transform::IDENTITY, false).expect("the mesh is valid");
     let aggregate = Aggregate::new(vec![object]);
     let rays = arriving();

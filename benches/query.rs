@@ -13,7 +13,7 @@ pub(crate) fn bench(criterion: &mut Criterion) {
 }
 
 fn query(criterion: &mut Criterion) {
-    for name in ["4 spheres", "12 shapes", "1000 spheres", "gem", "wine glass", "knot"] {
+    for name in ["4 spheres", "12 shapes", "1000 spheres", "gem", "wine glass", "knot", "25 glasses"] {
         let scene = scene(name);
         let Rays { primary, inner, random, shadow } = Rays::of(&scene);
         for (kind, rays) in [("primary", &primary), ("inner", &inner), ("random", &random)] {

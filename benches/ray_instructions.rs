@@ -55,8 +55,9 @@ closest_at_most! {
     wine_glass_primary, rays_of_wine_glass_primary: 2_479_000, "wine glass", primary;
     wine_glass_inner, rays_of_wine_glass_inner: 1_377_000, "wine glass", inner;
     wine_glass_random, rays_of_wine_glass_random: 3_483_000, "wine glass", random;
-    spheres_primary, rays_of_spheres_primary: 1_605_000, "4 spheres", primary;
+    spheres_primary, rays_of_spheres_primary: 954_000, "4 spheres", primary;
     shapes_inner, rays_of_shapes_inner: 913_000, "12 shapes", inner;
+    glasses_inner, rays_of_glasses_inner: 3_509_000, "25 glasses", inner;
     tree_of_spheres_random, rays_of_tree_of_spheres_random: 3_426_000, "1000 spheres", random;
 }
 

@@ -13,7 +13,7 @@ use std::path::Path;
 use std::sync::Arc;
 use vitrum::bxdf::{Interface, Refraction};
 use vitrum::geometry::mesh::{MeshData, TriangleMesh};
-use vitrum::geometry::shape::{Cuboid, Cylinder, Sphere};
+use vitrum::geometry::shape::{Cuboid, Cylinder, Plane, Sphere};
 use vitrum::geometry::{Aggregate, Counters, Object, Query, Shape, Side, SurfaceInteraction};
 use vitrum::math::{DVec3, Frame, Ray, Transform, unit};
 use vitrum::tracer::{Camera, Projection};
@@ -68,7 +68,20 @@ pub(crate) fn gallery(name: &str) -> MeshData {
 }
 
 pub(crate) fn trace(mesh: &MeshData) -> Shape {
-    Shape::Mesh(Arc::new(TriangleMesh::new(mesh).expect("the mesh is valid")))
+    Shape::Mesh(Arc::new(TriangleMesh::new(mesh.clone()).expect("the mesh is valid")))
+}
+
+/// A table laid for twenty-five: wine glasses that stand apart on a plane.
+fn glasses() -> Aggregate {
+    let glass = trace(&gallery("wine_glass.obj"));
+    let valid = "the object is valid";
+    let table = Shape::Plane(Plane::new(DVec3::ZERO, DVec3::Y).expect("it has a normal"));
+    let mut objects = vec![Object::new(table, &Transform::IDENTITY, false).expect(valid)];
+    objects.extend((0..25).map(|i| {
+        let place = DVec3::new(f64::from(i % 5), 0.0, f64::from(i / 5)) * 0.12;
+        Object::new(glass.clone(), &Transform::translate(place), false).expect(valid)
+    }));
+    Aggregate::new(objects)
 }
 
 /// The scenes, by name: the knot has 12 288 triangles, the wine glass 9984, the gem 302.
@@ -79,6 +92,7 @@ pub(crate) fn scene(name: &str) -> Aggregate {
         "1000 spheres" => thousand_spheres(),
         "knot" => aggregate([trace(&gallery("torus_knot.obj"))]),
         "wine glass" => aggregate([trace(&gallery("wine_glass.obj"))]),
+        "25 glasses" => glasses(),
         "gem" => aggregate([trace(&gallery("brilliant.obj"))]),
         _ => unreachable!("no scene is called {name}"),
     }

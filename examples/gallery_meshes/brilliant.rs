@@ -1,4 +1,4 @@
-//! The standard round brilliant: 57 facets and a culet point, and a girdle of 64 sides. The girdle's diameter
+//! The standard round brilliant: 57 facets and a culet point, and a girdle of many sides. The girdle's diameter
 //! is 1 m, y is up, and the stone is centred on the origin.
 //!
 //! | facets | number | direction in the plan |
@@ -43,13 +43,13 @@ const PAVILION_DEGREES: f64 = 40.75;
 const GIRDLE_THICKNESS: f64 = 0.025;
 const STAR_LENGTH: f64 = 0.50;
 const LOWER_LENGTH: f64 = 0.75;
-/// Sides of the girdle; a multiple of 16, so that vertices stand where two girdle facets meet.
-const GIRDLE_SIDES: usize = 64;
-/// Girdle sides under one girdle facet.
-const SPAN: usize = GIRDLE_SIDES / 16;
+/// Sides of the girdle, in the gallery.
+pub(crate) const GIRDLE_SIDES: usize = 64;
 
-/// The stone.
-pub(crate) fn mesh() -> MeshData {
+/// The stone, with so many sides of the girdle: a multiple of 16, so that vertices stand where two girdle facets meet.
+pub(crate) fn mesh(sides: usize) -> MeshData {
+    // Girdle sides under one girdle facet.
+    let span = sides / 16;
     let crown = libm::tan(CROWN_DEGREES.to_radians());
     let pavilion = libm::tan(PAVILION_DEGREES.to_radians());
     let crown_height = crown * (RADIUS - TABLE_RADIUS);
@@ -69,27 +69,27 @@ pub(crate) fn mesh() -> MeshData {
     let mut stone = Stone::default();
     let table = stone.octagon(0, TABLE_RADIUS, table_y);
     let stars = stone.octagon(1, star_radius, star_y);
-    let upper = stone.girdle(stars, table_y - crown_height);
+    let upper = stone.girdle(sides, stars, table_y - crown_height);
     let deeps = stone.octagon(1, deep_radius, deep_y);
-    let lower = stone.girdle(deeps, culet_y + pavilion_height);
+    let lower = stone.girdle(sides, deeps, culet_y + pavilion_height);
     let culet = stone.vertex(DVec3::Y * culet_y);
 
     stone.facets.push(table.to_vec());
     for k in 0..8 {
-        let (before, next, tip) = ((k + 7) % 8, (k + 1) % 8, 2 * k * SPAN);
+        let (before, next, tip) = ((k + 7) % 8, (k + 1) % 8, 2 * k * span);
         stone.facets.push(vec![table[k], stars[k], table[next]]);
         stone.facets.push(vec![table[k], stars[before], upper[tip], stars[k]]);
         stone.facets.push(vec![culet, deeps[k], lower[tip], deeps[before]]);
     }
     for sixteenth in 0..16 {
-        let side = |ring: &[u32], step: usize| ring[(sixteenth * SPAN + step) % GIRDLE_SIDES];
-        let above = (0..=SPAN).map(|step| side(&upper, step));
+        let side = |ring: &[u32], step: usize| ring[(sixteenth * span + step) % sides];
+        let above = (0..=span).map(|step| side(&upper, step));
         stone.facets.push(iter::once(stars[sixteenth / 2]).chain(above).collect());
-        let below = (0..=SPAN).rev().map(|step| side(&lower, step));
+        let below = (0..=span).rev().map(|step| side(&lower, step));
         stone.facets.push(iter::once(deeps[sixteenth / 2]).chain(below).collect());
     }
-    for side in 0..GIRDLE_SIDES {
-        let next = (side + 1) % GIRDLE_SIDES;
+    for side in 0..sides {
+        let next = (side + 1) % sides;
         stone.facets.push(vec![lower[side], lower[next], upper[next], upper[side]]);
     }
     stone.mesh()
@@ -115,16 +115,17 @@ impl Stone {
 
     /// One edge of the girdle. It has height `y` where two girdle facets meet, every sixteenth of a turn;
     /// between, it lies on the plane of the facet, which its two ends and one of the `apexes` span.
-    fn girdle(&mut self, apexes: [u32; 8], y: f64) -> Vec<u32> {
-        let rim = |side: usize| circle::around_y(side, GIRDLE_SIDES, RADIUS, y);
+    fn girdle(&mut self, sides: usize, apexes: [u32; 8], y: f64) -> Vec<u32> {
+        let span = sides / 16;
+        let rim = |side: usize| circle::around_y(side, sides, RADIUS, y);
         let mut ring = Vec::new();
-        for side in 0..GIRDLE_SIDES {
+        for side in 0..sides {
             let mut position = rim(side);
-            let (sixteenth, step) = (side / SPAN, side % SPAN);
+            let (sixteenth, step) = (side / span, side % span);
             if step > 0 {
-                let end = rim(sixteenth * SPAN);
+                let end = rim(sixteenth * span);
                 let apex = self.positions[apexes[sixteenth / 2] as usize];
-                let normal = (rim((sixteenth + 1) * SPAN) - end).cross(apex - end);
+                let normal = (rim((sixteenth + 1) * span) - end).cross(apex - end);
                 let from_end = position - end;
                 position.y -= normal.dot(from_end) / normal.y;
             }

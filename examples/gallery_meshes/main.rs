@@ -19,8 +19,8 @@ fn main() -> io::Result<()> {
     let folder = env::args_os().nth(1).map_or_else(|| PathBuf::from("scenes/gallery/meshes"), PathBuf::from);
     let models = [
         (knot::NAME, knot::ABOUT, knot::mesh()),
-        (wine_glass::NAME, wine_glass::ABOUT, wine_glass::mesh()),
-        (brilliant::NAME, brilliant::ABOUT, brilliant::mesh()),
+        (wine_glass::NAME, wine_glass::ABOUT, wine_glass::mesh(wine_glass::SEGMENTS)),
+        (brilliant::NAME, brilliant::ABOUT, brilliant::mesh(brilliant::GIRDLE_SIDES)),
     ];
     for (name, about, mesh) in models {
         let path = folder.join(name).with_extension("obj");

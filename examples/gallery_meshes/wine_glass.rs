@@ -16,7 +16,8 @@ pub(crate) const NAME: &str = "wine_glass";
 pub(crate) const ABOUT: &str =
     "Wine glass: solid of revolution about y, 0.20 m high, walls with two sides, closed, smooth normals.";
 
-const SEGMENTS: usize = 64;
+/// Segments around the axis, in the gallery.
+pub(crate) const SEGMENTS: usize = 64;
 
 /// A knot of the profile, and how it is left and reached.
 struct Knot {
@@ -60,8 +61,8 @@ const PROFILE: [Knot; 12] = [
 ];
 const BOTTOM: Knot = knot([0.0, 0.0900], [-1.0, 0.0], [0.020, 0.0], 0);
 
-/// The glass.
-pub(crate) fn mesh() -> MeshData {
+/// The glass, of 156 triangles a segment.
+pub(crate) fn mesh(segments: usize) -> MeshData {
     let (points, normals): (Vec<_>, Vec<_>) = profile().into_iter().unzip();
     let rings = points.len() - 2;
     let mut mesh = MeshData::default();
@@ -69,13 +70,13 @@ pub(crate) fn mesh() -> MeshData {
     for (values, of) in [(&mut mesh.positions, &points), (&mut mesh.normals, &normals)] {
         values.push(on_axis(of[0]));
         for &DVec2 { x: r, y } in &of[1..=rings] {
-            values.extend((0..SEGMENTS).map(|segment| circle::around_y(segment, SEGMENTS, r, y)));
+            values.extend((0..segments).map(|segment| circle::around_y(segment, segments, r, y)));
         }
         values.push(on_axis(of[rings + 1]));
     }
-    let index = |ring: usize, segment: usize| (1 + ring * SEGMENTS + segment % SEGMENTS) as u32;
+    let index = |ring: usize, segment: usize| (1 + ring * segments + segment % segments) as u32;
     let last = index(rings, 0);
-    for segment in 0..SEGMENTS {
+    for segment in 0..segments {
         mesh.triangles.push([0, index(0, segment + 1), index(0, segment)]);
         for ring in 0..rings - 1 {
             let [a, b] = [index(ring, segment), index(ring, segment + 1)];

@@ -68,7 +68,7 @@ fn case(name: &'static str, mesh: &MeshData, scale: f64, offset: f64, is_instanc
         .iter()
         .map(|triangle| triangle.map(|corner| transform.world_point(mesh.positions[corner as usize])))
         .collect();
-    let shape = Shape::Mesh(Arc::new(TriangleMesh::new(&mesh).expect("a mesh that can be traced")));
+    let shape = Shape::Mesh(Arc::new(TriangleMesh::new(mesh).expect("a mesh that can be traced")));
     let object = Object::new(shape, &transform, false).expect("a valid object");
     let aggregate = Aggregate::new(vec![object]);
     let inside = points_inside(&aggregate);

@@ -20,8 +20,8 @@ use vitrum_geometry::mesh::{MeshData, Triangle, health, mend};
 fn models() -> [(&'static str, &'static str, MeshData); 3] {
     [
         (knot::NAME, knot::ABOUT, knot::mesh()),
-        (wine_glass::NAME, wine_glass::ABOUT, wine_glass::mesh()),
-        (brilliant::NAME, brilliant::ABOUT, brilliant::mesh()),
+        (wine_glass::NAME, wine_glass::ABOUT, wine_glass::mesh(wine_glass::SEGMENTS)),
+        (brilliant::NAME, brilliant::ABOUT, brilliant::mesh(brilliant::GIRDLE_SIDES)),
     ]
 }
 
@@ -116,7 +116,7 @@ fn the_knot_is_a_free_tube() {
 
 #[test]
 fn the_wine_glass_stands_and_holds() {
-    let mesh = wine_glass::mesh();
+    let mesh = wine_glass::mesh(wine_glass::SEGMENTS);
     assert!(mesh.triangles.len() <= 10_000, "{}", mesh.triangles.len());
     let (low, high) = bounds(&mesh);
     assert_eq!((low.y, high.y), (0.0, 0.2));
@@ -146,7 +146,7 @@ fn the_wine_glass_stands_and_holds() {
 
 #[test]
 fn the_brilliant_has_its_facets() {
-    let mesh = brilliant::mesh();
+    let mesh = brilliant::mesh(brilliant::GIRDLE_SIDES);
     let mut heights: Vec<_> = mesh.normals.iter().map(|normal| normal.y).collect();
     heights.sort_by(f64::total_cmp);
     assert_eq!(heights.iter().filter(|y| **y > 1e-9).count(), 33, "crown");
@@ -172,7 +172,7 @@ fn the_brilliant_has_its_facets() {
 
 #[test]
 fn the_brilliant_has_its_proportions() {
-    let mesh = brilliant::mesh();
+    let mesh = brilliant::mesh(brilliant::GIRDLE_SIDES);
     let steep = |degrees: f64| {
         let angle = |normal: &&DVec3| (normal.y.abs().acos().to_degrees() - degrees).abs() < 1e-9;
         mesh.normals.iter().filter(angle).count()

@@ -34,7 +34,7 @@ fn subdivided(level: u32, smooth: bool) -> Shape {
     let (normals, normal_triangles) =
         if smooth { (positions.clone(), triangles.clone()) } else { (vec![], vec![]) };
     let data = MeshData { positions, triangles, normals, normal_triangles, ..MeshData::default() };
-    Shape::Mesh(Arc::new(TriangleMesh::new(&data).expect("valid mesh")))
+    Shape::Mesh(Arc::new(TriangleMesh::new(data).expect("valid mesh")))
 }
 
 fn scene(shape: Shape) -> Scene {

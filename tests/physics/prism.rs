@@ -20,7 +20,7 @@ fn prism(apex: f64) -> Shape {
         vec![[0, 1, 2], [3, 5, 4], [0, 3, 4], [0, 4, 1], [0, 2, 5], [0, 5, 3], [1, 4, 5], [1, 5, 2]];
     let data = MeshData { positions, triangles, ..MeshData::default() };
     assert!(health(&data).is_closed() && health(&data).volume().is_some_and(|v| v > 0.0));
-    Shape::Mesh(Arc::new(TriangleMesh::new(&data).expect("valid mesh")))
+    Shape::Mesh(Arc::new(TriangleMesh::new(data).expect("valid mesh")))
 }
 
 /// The deviation of a ray that meets the middle of the left side at `incidence` (radians) to its normal.

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! pip download --no-deps embreex==4.4.0.post1 && unzip embreex-*.whl -d embreex
-//! VITRUM_ASSETS=... cargo bench --bench embree -- embreex/embreex.libs/libembree4-*.so.4 [THREADS]
+//! VITRUM_ASSETS=... cargo bench --bench embree -- embreex/embreex.libs/libembree4-*.so.4 [THREADS [MESH]]
 //! ```
 //!
 //! For each mesh six kinds of rays, 120 000 of each: `primary` (a camera's), `refracted` (from where these hit, into glass of
@@ -13,8 +13,16 @@
 
 #![expect(clippy::print_stdout, reason = "a table is what this program is for")]
 
+#[path = "../../../examples/gallery_meshes/brilliant.rs"]
+#[expect(dead_code, reason = "the names of files are not needed here")]
+mod brilliant;
+#[path = "../../../examples/gallery_meshes/circle.rs"]
+mod circle;
 mod library;
 mod meshes;
+#[path = "../../../examples/gallery_meshes/wine_glass.rs"]
+#[expect(dead_code, reason = "the names of files are not needed here")]
+mod wine_glass;
 
 use library::{FlushToZero, Options, RayHit, Scene};
 use std::hint::black_box;
@@ -41,8 +49,9 @@ fn main() {
         return;
     };
     let threads = rest.first().map_or(1, |threads| threads.parse().expect("a number of threads"));
+    let asked_for = |named: &meshes::Named| rest.get(1).is_none_or(|name| named.name == name);
     let assets = vitrum_testkit::assets();
-    for named in meshes::all(Path::new(env!("CARGO_MANIFEST_DIR")), assets.as_deref()) {
+    for named in meshes::all(assets.as_deref()).into_iter().filter(asked_for) {
         compare(&named, &PathBuf::from(library), threads);
     }
 }
@@ -63,7 +72,7 @@ struct Set {
 
 fn compare(named: &meshes::Named, library: &Path, threads: usize) {
     let start = now();
-    let mesh = Arc::new(TriangleMesh::new(&named.mesh).expect("a mesh that can be traced"));
+    let mesh = Arc::new(TriangleMesh::new(named.mesh.clone()).expect("a mesh that can be traced"));
     let our_build = start.elapsed().as_secs_f64();
     let bytes = mesh.memory() as f64 / mesh.triangle_count() as f64;
     let object = Object::new(Shape::Mesh(Arc::clone(&mesh)), &Transform::IDENTITY, false).expect("valid");

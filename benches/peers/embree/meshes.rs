@@ -1,5 +1,6 @@
 //! The meshes of the comparison.
 
+use crate::{brilliant, wine_glass};
 use std::collections::BTreeMap;
 use std::path::Path;
 use vitrum::geometry::mesh::MeshData;
@@ -12,11 +13,12 @@ pub(crate) struct Named {
 }
 
 /// All of them; those that stand among the assets only where these are.
-pub(crate) fn all(repository: &Path, assets: Option<&Path>) -> Vec<Named> {
-    let gallery = |name: &str| read(&repository.join("scenes/gallery/meshes").join(name));
+pub(crate) fn all(assets: Option<&Path>) -> Vec<Named> {
     let mut meshes = vec![
-        Named { name: "gem", mesh: gallery("brilliant.obj") },
-        Named { name: "wine glass", mesh: gallery("wine_glass.obj") },
+        Named { name: "gem", mesh: brilliant::mesh(128) },
+        Named { name: "gallery's gem", mesh: brilliant::mesh(brilliant::GIRDLE_SIDES) },
+        Named { name: "wine glass", mesh: wine_glass::mesh(128) },
+        Named { name: "gallery's wine glass", mesh: wine_glass::mesh(wine_glass::SEGMENTS) },
     ];
     if let Some(assets) = assets {
         let bunny = close(read(&assets.join("obj/stanford-bunny.obj")));

@@ -4,7 +4,8 @@ use crate::departure::Query;
 use crate::interaction::SurfaceInteraction;
 use crate::mesh::{AnyHit, ClosestHit, TriangleMesh};
 use crate::object::Object;
-use crate::shape::{Crossing, Sphere};
+use crate::solids::Solids;
+use crate::spheres::Spheres;
 use crate::wide::{
     Build, FrameRay, Isa, Items, Lanes, NONE, Numbers, Part, Processor, Task, UnitFrame, Visitor, WideTree,
 };
@@ -12,11 +13,11 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use vitrum_math::Bounds;
 
-/// Bounded objects are tried one by one while their costs sum to at most this; more stand in a tree. Measured: spheres are
-/// worth sweeping up to about 12, other shapes up to 2 (`benches/README.md`).
-const FLAT_LIMIT: usize = 12;
+/// Bounded objects are tried one by one while their costs sum to at most this; more stand in a tree. Measured: spheres, of
+/// which four are tried at a time, are worth sweeping up to about 24, others up to 2, with spheres beside them (`benches/README.md`).
+const FLAT_LIMIT: usize = 24;
 const SPHERE_COST: usize = 1;
-const OTHER_COST: usize = 5;
+const OTHER_COST: usize = 10;
 
 /// An object costs about as much as a node, and has an answer of its own.
 const OBJECTS: Items = Items::OneByOne(0.7);
@@ -80,16 +81,15 @@ impl Nearest {
 #[derive(Clone, Debug)]
 pub struct Aggregate {
     objects: Vec<Object>,
-    /// Tried for every ray, while bounded objects are few: spheres, side by side in memory.
-    spheres: Vec<(u32, Sphere)>,
+    /// Tried for every ray, while bounded objects are few: spheres, several at a time.
+    spheres: Spheres,
     /// And meshes, which are asked at once.
     meshes: Vec<(u32, Arc<TriangleMesh>)>,
     /// Tried for every ray: infinite objects, and all others while bounded objects are few.
     flat: Vec<u32>,
     /// The rest.
     tree: Option<ObjectTree>,
-    /// For each object whether it is a convex solid apart from all others: a ray inside it can meet nothing but itself.
-    isolated: Vec<bool>,
+    solids: Solids,
     bounds: Bounds,
     isa: Isa,
 }
@@ -116,11 +116,18 @@ impl Task for Closest<'_> {
     #[inline(always)]
     fn run<P: Processor>(&mut self) {
         let Self { all, query, nearest, counters } = self;
-        if let Some(solid) = all.enclosing(query) {
-            return all.objects[solid as usize].closest(query, solid, nearest, counters);
+        if let Some((solid, others)) = all.solids.around(query) {
+            all.objects[solid as usize].closest(query, solid, nearest, counters);
+            // Unless the ray got out through a gap, the way to the hit lies within the bounds of the solid.
+            if nearest.limit() < f64::INFINITY {
+                if !others.is_empty() {
+                    offer_others(others, &all.objects, query, nearest, counters);
+                }
+                return;
+            }
         }
         if !all.spheres.is_empty() {
-            offer_spheres(&all.spheres, query, nearest);
+            all.spheres.closest(query, nearest);
         }
         for (id, mesh) in &all.meshes {
             ClosestHit { mesh, ray: &query.ray, is_unit: true, query, object: *id, nearest, counters }
@@ -136,16 +143,6 @@ impl Task for Closest<'_> {
 }
 
 // None of these is inlined: the compiler would prepare for spheres and trees before it looks whether there are any.
-
-#[inline(never)]
-fn offer_spheres(spheres: &[(u32, Sphere)], query: &Query, nearest: &mut Nearest) {
-    for (id, sphere) in spheres {
-        let Crossing { t, face } = query.first(sphere.crossings(&query.ray, query.face_left(*id)), *id);
-        if t <= nearest.limit() && t < f64::INFINITY {
-            nearest.offer(Hit { t, object: *id, face, barycentrics: [0.0; 2] });
-        }
-    }
-}
 
 #[inline(never)]
 fn offer_others(
@@ -185,7 +182,7 @@ impl Task for Occluded<'_> {
     #[inline(always)]
     fn run<P: Processor>(&mut self) -> bool {
         let &mut Self { all, query, limit, ref mut counters } = self;
-        if !all.spheres.is_empty() && any_sphere(&all.spheres, query, limit) {
+        if !all.spheres.is_empty() && all.spheres.any(query, limit) {
             return true;
         }
         for (id, mesh) in &all.meshes {
@@ -198,13 +195,6 @@ impl Task for Occluded<'_> {
         !all.flat.is_empty() && any_other(&all.flat, &all.objects, query, limit, counters)
             || all.tree.as_ref().is_some_and(|tree| any_in_tree(tree, &all.objects, query, limit, counters))
     }
-}
-
-#[inline(never)]
-fn any_sphere(spheres: &[(u32, Sphere)], query: &Query, limit: f64) -> bool {
-    spheres
-        .iter()
-        .any(|(id, sphere)| query.first(sphere.crossings(&query.ray, query.face_left(*id)), *id).t < limit)
 }
 
 #[inline(never)]
@@ -307,7 +297,7 @@ impl Aggregate {
         let bounded: Vec<(u32, Bounds)> =
             (0u32..).zip(&objects).filter_map(|(id, o)| o.bounds().map(|b| (id, b))).collect();
         let bounds = bounded.iter().fold(Bounds::EMPTY, |all, (_, b)| all.union(*b));
-        let isolated = isolated(&objects, &bounded);
+        let solids = Solids::new(&objects, &bounded);
         let cost =
             |id: u32| if objects[id as usize].as_sphere().is_some() { SPHERE_COST } else { OTHER_COST };
         let is_flat = bounded.iter().map(|(id, _)| cost(*id)).sum::<usize>() <= FLAT_LIMIT;
@@ -329,7 +319,8 @@ impl Aggregate {
                 .expect("fewer objects than fit into memory");
             ObjectTree { frame, boxes, objects: bounded.iter().map(|(id, _)| *id).collect() }
         });
-        Self { objects, spheres, meshes, flat, tree, isolated, bounds, isa: Isa::best() }
+        let spheres = Spheres::new(&spheres);
+        Self { objects, spheres, meshes, flat, tree, solids, bounds, isa: Isa::best() }
     }
 
     /// The objects, by id.
@@ -361,14 +352,6 @@ impl Aggregate {
         self.isa.run(&mut Occluded { all: self, query, limit, counters })
     }
 
-    /// The isolated convex solid that the ray starts inside of, if it does and is still there.
-    #[inline]
-    fn enclosing(&self, query: &Query) -> Option<u32> {
-        let departed = query.departed.as_ref()?;
-        let inside = departed.behind && !query.has_passed() && self.isolated[departed.object as usize];
-        inside.then_some(departed.object)
-    }
-
     /// The point of a hit that [`closest`](Self::closest) found for the same query.
     #[inline]
     pub fn interaction(&self, query: &Query, hit: &Hit) -> SurfaceInteraction {
@@ -376,41 +359,11 @@ impl Aggregate {
     }
 }
 
-/// Which objects are convex solids that touch no other object's bounds.
-fn isolated(objects: &[Object], bounded: &[(u32, Bounds)]) -> Vec<bool> {
-    // Sweep along the longest axis of the scene: bounds that overlap there are compared in full.
-    let all = bounded.iter().fold(Bounds::EMPTY, |all, (_, b)| all.union(*b));
-    let extent = all.extent();
-    let axis = (0..3).max_by(|&a, &b| extent[a].total_cmp(&extent[b])).unwrap_or(0);
-    let mut order: Vec<usize> = (0..bounded.len()).collect();
-    order.sort_by(|&a, &b| bounded[a].1.min[axis].total_cmp(&bounded[b].1.min[axis]));
-    let mut touched = vec![false; objects.len()];
-    for (rank, &a) in order.iter().enumerate() {
-        let (id, bounds) = bounded[a];
-        for &b in &order[rank + 1..] {
-            let (other_id, other) = bounded[b];
-            if other.min[axis] > bounds.max[axis] {
-                break;
-            }
-            if bounds.touches(&other) {
-                touched[id as usize] = true;
-                touched[other_id as usize] = true;
-            }
-        }
-    }
-    for plane in objects.iter().filter(|o| o.bounds().is_none()) {
-        for (id, bounds) in bounded {
-            touched[*id as usize] |= plane.may_cross(bounds);
-        }
-    }
-    objects.iter().zip(touched).map(|(object, touched)| object.is_convex_solid() && !touched).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::interaction::Side;
-    use crate::shape::{Plane, Shape, Sphere};
+    use crate::shape::{Shape, Sphere};
     use vitrum_math::{DVec3, Ray, Transform};
 
     fn object(shape: Shape) -> Object {
@@ -421,11 +374,10 @@ mod tests {
         object(Shape::Sphere(Sphere::new(DVec3::new(x, y, 0.0), 1.0).expect("valid")))
     }
 
-    /// A ray that goes straight through the wall of an isolated solid meets what stands beyond it.
+    /// A ray that goes straight through the wall of a solid apart from all others meets what stands beyond it.
     #[test]
-    fn beyond_an_isolated_solid_the_world_goes_on() {
+    fn beyond_a_solid_the_world_goes_on() {
         let aggregate = Aggregate::new(vec![sphere(0.0, 1.5), sphere(8.0, 1.5)]);
-        assert_eq!(aggregate.isolated, [true, true]);
         let mut counters = Counters::default();
         let camera = Query::new(Ray::new(DVec3::new(-5.0, 1.5, 0.0), DVec3::X));
         let hit = aggregate.closest(&camera, &mut counters).expect("the first sphere");
@@ -435,14 +387,5 @@ mod tests {
         query.pass(exit.t, exit.object, exit.face);
         let next = aggregate.closest(&query, &mut counters).expect("the second sphere");
         assert_eq!((next.object, next.t), (1, 8.0));
-    }
-
-    #[test]
-    fn only_solids_that_touch_nothing_are_isolated() {
-        let floor = object(Shape::Plane(Plane::new(DVec3::ZERO, DVec3::Y).expect("valid")));
-        let objects = vec![sphere(0.0, 1.5), sphere(2.0, 1.5), sphere(4.5, 1.5), sphere(8.0, 1.0), floor];
-        let aggregate = Aggregate::new(objects);
-        // The first two touch each other, the fourth stands on the floor.
-        assert_eq!(aggregate.isolated, [false, false, true, false, false]);
     }
 }

@@ -25,6 +25,8 @@ mod interaction;
 pub mod mesh;
 mod object;
 pub mod shape;
+mod solids;
+mod spheres;
 mod wide;
 
 pub use aggregate::{Aggregate, Counters, Hit};

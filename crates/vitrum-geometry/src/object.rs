@@ -77,6 +77,11 @@ impl Object {
         }
     }
 
+    /// True for a shape that may enclose a space: every mesh is taken for one.
+    pub(crate) fn may_enclose(&self) -> bool {
+        self.is_convex_solid() || matches!(self.shape, Shape::Mesh(_))
+    }
+
     /// True when its outside is turned inward.
     pub fn is_flipped(&self) -> bool {
         self.flipped

@@ -5,7 +5,7 @@ use crate::aggregate::{Aggregate, Counters, Hit, Nearest};
 use crate::departure::Query;
 use crate::interaction::Side;
 use crate::object::Object;
-use crate::shape::Shape;
+use crate::shape::{Plane, Shape, Sphere};
 use crate::wide::Isa;
 use std::sync::Arc;
 use vitrum_math::{DVec3, Ray, Transform, unit};
@@ -122,13 +122,13 @@ fn the_tree_finds_what_trying_every_triangle_finds() {
         meshes.push(moved);
     }
     for (number, data) in meshes.iter().enumerate() {
-        let mesh = TriangleMesh::new(data).expect("valid mesh");
+        let mesh = TriangleMesh::new(data.clone()).expect("valid mesh");
         let builds = [Build::Fast, Build::Medium, Build::Best];
         let walked: Vec<_> = builds
             .iter()
             .flat_map(|build| Isa::all().iter().map(move |isa| (build, isa)))
             .map(|how| {
-                let mesh = TriangleMesh::with_build(data, *how.0).expect("valid mesh");
+                let mesh = TriangleMesh::with_build(data.clone(), *how.0).expect("valid mesh");
                 (how, mesh.with_instructions(*how.1))
             })
             .collect();
@@ -165,12 +165,73 @@ fn the_tree_finds_what_trying_every_triangle_finds() {
 #[test]
 fn threads_have_no_say_in_the_tree() {
     let data = bumpy_ball(32, 40);
-    let alone = TriangleMesh::new(&data).expect("valid mesh");
+    let alone = TriangleMesh::new(data.clone()).expect("valid mesh");
     let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().expect("three threads");
-    let together = pool.install(|| TriangleMesh::new(&data)).expect("valid mesh");
+    let together = pool.install(|| TriangleMesh::new(data)).expect("valid mesh");
     let faces = |mesh: &TriangleMesh| mesh.tree.blocks().iter().map(|block| block.faces).collect::<Vec<_>>();
     assert_eq!(faces(&alone), faces(&together));
     assert_eq!(format!("{:?}", alone.tree), format!("{:?}", together.tree));
+}
+
+/// Inside solids as everywhere, what is hit first is what is nearest of what each object has to say. A row of balls of which
+/// some overlap, with a bubble each, one of which breaks through its wall, an open one, spheres in bubbles, a floor that cuts
+/// one ball and passes a hair below another; rays in any direction, and rays aimed at vertices.
+#[test]
+fn inside_solids_nothing_is_missed() {
+    let wall = bumpy_ball(12, 16);
+    let bubbly = |offset: f64| {
+        let mut ball = wall.clone();
+        ball.positions.extend(wall.positions.iter().map(|p| *p * 0.7 + DVec3::X * offset));
+        let base = wall.positions.len() as u32;
+        ball.triangles.extend(wall.triangles.iter().map(|&[a, b, c]| [a, c, b].map(|corner| corner + base)));
+        ball
+    };
+    let mut open = wall.clone();
+    open.triangles.truncate(200);
+    let lowest = wall.positions.iter().map(|p| p.y).fold(f64::INFINITY, f64::min) * 1.1;
+    let floor = Plane::new(DVec3::Y * (lowest - 1e-9), DVec3::Y).expect("valid plane");
+    let mut objects =
+        vec![Object::new(Shape::Plane(floor), &Transform::IDENTITY, false).expect("valid object")];
+    let mut targets = Vec::new();
+    for (i, x) in [0.0, 1.5, 4.0, 6.5, 8.0, 11.0].into_iter().enumerate() {
+        let data =
+            [bubbly(0.0), bubbly(0.0), bubbly(0.6), bubbly(0.0), wall.clone(), open.clone()][i].clone();
+        let place = DVec3::new(x, if i == 3 { -1.0 } else { 0.0 }, 0.0);
+        let scale = Transform::scale(DVec3::new(1.0, 1.1, -0.9)).expect("invertible");
+        let to = scale.then(&Transform::translate(place)).expect("invertible");
+        targets.extend(data.positions.iter().map(|p| to.world_point(*p)));
+        let mesh = Shape::Mesh(Arc::new(TriangleMesh::new(data).expect("valid mesh")));
+        objects.push(Object::new(mesh, &to, false).expect("valid object"));
+        if i % 2 == 0 {
+            let sphere = Shape::Sphere(Sphere::new(place, 0.3).expect("valid sphere"));
+            objects.push(Object::new(sphere, &Transform::IDENTITY, false).expect("valid object"));
+        }
+    }
+    let aggregate = Aggregate::new(objects.clone());
+    let (mut random, mut counters) = (Random(6), Counters::default());
+    let mut inside = 0;
+    for i in 0..20_000 {
+        let from = DVec3::new(random.unit() * 11.0, 0.0, 0.0) + random.vector() * 3.0;
+        let target = |at: DVec3, random: &mut Random| {
+            let aimed = targets[(random.unit() * targets.len() as f64) as usize] - at;
+            unit(if i % 2 == 0 { random.vector() } else { aimed })
+        };
+        let mut query = Query::new(Ray::new(from, target(from, &mut random)));
+        for _ in 0..12 {
+            let hit = aggregate.closest(&query, &mut counters);
+            let mut expected = Nearest::default();
+            for (id, object) in (0u32..).zip(&objects) {
+                object.closest(&query, id, &mut expected, &mut counters);
+            }
+            assert_eq!(hit, expected.found(), "ray {i}");
+            let Some(hit) = hit else { break };
+            let surface = aggregate.interaction(&query, &hit);
+            let wi = target(surface.point, &mut random);
+            inside += u32::from(wi.dot(surface.ng) < 0.0);
+            query = surface.leave(wi, surface.side_of(wi));
+        }
+    }
+    assert!(inside > 10_000, "{inside} rays inside something");
 }
 
 /// No ray from inside a closed mesh gets out unseen, wherever it is aimed; seen from outside it enters as often as it
@@ -181,7 +242,7 @@ fn closed_meshes_do_not_leak() {
     for (scale, offset) in [(1.0, 0.0), (1e-4, 0.0), (1e4, 0.0), (1.0, 1e5)] {
         let mut data = bumpy_ball(24, 32);
         data.positions.iter_mut().for_each(|p| *p = *p * scale + DVec3::splat(offset));
-        let mesh = Shape::Mesh(Arc::new(TriangleMesh::new(&data).expect("valid mesh")));
+        let mesh = Shape::Mesh(Arc::new(TriangleMesh::new(data.clone()).expect("valid mesh")));
         let skew = Transform::scale(DVec3::new(-1.5, 0.7, 2.0)).expect("invertible");
         let skew = skew.then(&Transform::rotate(unit(DVec3::new(1.0, 2.0, 3.0)), 0.5)).expect("invertible");
         for transform in [Transform::IDENTITY, skew] {
@@ -229,7 +290,7 @@ fn departing_rays_see_no_surface_at_their_start() {
         let mut data = smooth_normals(bumpy_ball(24, 32));
         // Without bumps: convex, so a reflected ray can't come back at all.
         data.positions.iter_mut().for_each(|p| *p = unit(*p) * scale + DVec3::splat(offset));
-        let mesh = Shape::Mesh(Arc::new(TriangleMesh::new(&data).expect("valid mesh")));
+        let mesh = Shape::Mesh(Arc::new(TriangleMesh::new(data.clone()).expect("valid mesh")));
         let aggregate = Aggregate::new(vec![Object::new(mesh, &Transform::IDENTITY, false).expect("valid")]);
         let centre = DVec3::splat(offset);
         for i in 0..20_000 {

@@ -87,12 +87,20 @@ pub(crate) struct MeshPoint {
     pub(crate) error: f64,
 }
 
+/// Only what is to be kept; nothing, of nothing.
+fn keep<T>(all: &mut Vec<T>, kept: &[bool]) {
+    let mut kept = kept.iter();
+    all.retain(|_| *kept.next().expect("as many as triangles"));
+    all.shrink_to_fit();
+}
+
 impl TriangleMesh {
-    /// Prepares a mesh for tracing. Its normals, where it has any, are used for shading.
+    /// Prepares a mesh for tracing. Its normals, where it has any, are used for shading. What is taken is used or freed before
+    /// the tree is built, so that there is no second copy of the mesh beside it.
     ///
     /// # Errors
     /// [`MeshError`] for a mesh that is empty, not finite, too large, or has indices out of range.
-    pub fn new(data: &MeshData) -> Result<Self, MeshError> {
+    pub fn new(data: MeshData) -> Result<Self, MeshError> {
         Self::with_build(data, Build::default())
     }
 
@@ -101,8 +109,8 @@ impl TriangleMesh {
     ///
     /// # Errors
     /// As for [`new`](Self::new).
-    pub fn with_build(data: &MeshData, build: Build) -> Result<Self, MeshError> {
-        Self::check_positions(data)?;
+    pub fn with_build(data: MeshData, build: Build) -> Result<Self, MeshError> {
+        Self::check_positions(&data)?;
         if u32::try_from(data.triangles.len()).is_err() {
             return Err(MeshError::TooLarge(data.triangles.len()));
         }
@@ -118,40 +126,42 @@ impl TriangleMesh {
             return Err(MeshError::Index { triangle });
         }
 
-        let used = data.triangles.iter().flatten().map(|&i| data.positions[i as usize]);
+        let MeshData { positions, mut triangles, normals, mut normal_triangles, mut materials, .. } = data;
+        let used = triangles.iter().flatten().map(|&i| positions[i as usize]);
         let bounds = Bounds::around(used);
         let frame = UnitFrame::around(&bounds);
-        let vertices: Vec<Vec3> = data.positions.iter().map(|&p| frame.inward(p).as_vec3()).collect();
+        let vertices: Vec<Vec3> = positions.into_iter().map(|p| frame.inward(p).as_vec3()).collect();
+        let normals: Vec<Vec3> = if smooth {
+            normals.into_iter().map(|n| n.normalize_or_zero().as_vec3()).collect()
+        } else {
+            normal_triangles.clear();
+            vec![]
+        };
+        if materials.len() != triangles.len() {
+            materials.clear();
+        }
+
         // A triangle without area in the rounded frame can't be hit; its neighbours close the surface.
         let has_area = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|i| vertices[i as usize].as_dvec3());
             (b - a).cross(c - a) != DVec3::ZERO
         };
-        let kept: Vec<usize> = (0..data.triangles.len()).filter(|&i| has_area(&data.triangles[i])).collect();
-        if kept.is_empty() {
+        let kept: Vec<bool> = triangles.iter().map(has_area).collect();
+        keep(&mut triangles, &kept);
+        keep(&mut normal_triangles, &kept);
+        keep(&mut materials, &kept);
+        if triangles.is_empty() {
             return Err(MeshError::Empty);
         }
-        let triangles: Vec<[u32; 3]> = kept.iter().map(|&i| data.triangles[i]).collect();
-        let normal_triangles =
-            if smooth { kept.iter().map(|&i| data.normal_triangles[i]).collect() } else { vec![] };
-        let normals = if smooth {
-            data.normals.iter().map(|n| n.normalize_or_zero().as_vec3()).collect()
-        } else {
-            vec![]
-        };
+
         let corners = |t: &[u32; 3]| t.map(|i| vertices[i as usize]);
         let boxes = triangles.iter().map(|t| {
             let [a, b, c] = corners(t);
             (a.min(b).min(c), a.max(b).max(c))
         });
-        let too_large = || MeshError::TooLarge(data.triangles.len());
+        let too_large = || MeshError::TooLarge(triangles.len());
         let tree = WideTree::build(boxes, BLOCKS_OF_TRIANGLES, build).ok_or_else(too_large)?;
         let tree = tree.map(|faces| TriangleBlock::new(faces, |face| corners(&triangles[face as usize])));
-        let materials = if data.materials.len() == data.triangles.len() {
-            kept.iter().map(|&i| data.materials[i]).collect()
-        } else {
-            vec![]
-        };
         Ok(Self { frame, bounds, vertices, triangles, normals, normal_triangles, materials, tree })
     }
 

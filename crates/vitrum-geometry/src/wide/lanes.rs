@@ -32,6 +32,8 @@ pub(crate) trait Doubles: Copy {
     fn max(self, other: Self) -> Self;
     /// These magnitudes with those signs.
     fn with_signs_of(self, other: Self) -> Self;
+    /// A bit for each of the four where self ≤ other.
+    fn at_most(self, other: Self) -> u32;
     /// The smallest; none may be NaN.
     fn least(self) -> f64;
     /// The largest; none may be NaN.
@@ -143,6 +145,10 @@ impl Doubles for Four {
     #[inline(always)]
     fn with_signs_of(self, other: Self) -> Self {
         self.zip(other, f64::copysign)
+    }
+    #[inline(always)]
+    fn at_most(self, other: Self) -> u32 {
+        (0..4).fold(0, |mask, i| mask | u32::from(self.0[i] <= other.0[i]) << i)
     }
     #[inline(always)]
     fn least(self) -> f64 {

@@ -206,6 +206,7 @@ impl WideTree<Numbers> {
         }
         let binary =
             if boxes.len() > MANY { parts::build(&boxes, build) } else { build_at_once(&boxes, build) };
+        drop(boxes);
         collapse::collapse(&binary, items)
     }
 }

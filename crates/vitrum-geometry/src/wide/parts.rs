@@ -27,7 +27,7 @@ pub(super) fn build(boxes: &[Item], build: Build) -> Bvh2 {
     while parts.len() < PARTS {
         parts = each(parts, |part| halves(boxes, part)).into_iter().flatten().collect();
     }
-    let mut whole = join(&each(parts, |part| {
+    let mut whole = join(each(parts, |part| {
         let own: Vec<Item> = part.iter().map(|at| Item(boxes[at.item as usize].0)).collect();
         let mut tree = super::build_at_once(&own, build);
         tree.primitive_indices.iter_mut().for_each(|item| *item = part[*item as usize].item);
@@ -68,13 +68,13 @@ fn halves<'p>(boxes: &[Item], part: &'p mut [Sorted]) -> [&'p mut [Sorted]; 2] {
 }
 
 /// One tree over these, as many as a power of two.
-fn join(trees: &[Bvh2]) -> Bvh2 {
+fn join(trees: Vec<Bvh2>) -> Bvh2 {
     let mut whole = Bvh2::default();
     // Level by level: an inner node for every pair below, and at last the roots.
     let inner = trees.len() - 1;
     whole.nodes = (0..inner).map(|node| Bvh2Node::new(Aabb::empty(), 0, 2 * node as u32 + 1)).collect();
     whole.nodes.extend(trees.iter().map(|tree| tree.nodes[0]));
-    for (part, tree) in trees.iter().enumerate() {
+    for (part, tree) in trees.into_iter().enumerate() {
         let (nodes, items) = (whole.nodes.len() as u32 - 1, whole.primitive_indices.len() as u32);
         // All but the root, which stands above.
         let moved = |mut node: Bvh2Node| {

@@ -57,6 +57,16 @@ pub(super) fn lower(
         lowering.problems.push(error(source, desc.surroundings.span, reason, "what surrounds everything"));
     }
     for object in &desc.objects {
+        if let scene::Shape::Mesh { file, normals, build, group, .. } = &lowering.original(object).shape {
+            lowering.meshes.announce(
+                &folder.join(file),
+                *normals,
+                *build,
+                group.as_ref().map(|name| &*name.text),
+            );
+        }
+    }
+    for object in &desc.objects {
         lowering.object(object);
     }
     let camera = lowering.camera();

@@ -2,7 +2,8 @@
 
 use crate::obj::{self, MtlMaterial, ObjError, ObjFile, Part};
 use crate::scene::Normals;
-use std::collections::BTreeMap;
+use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use vitrum_geometry::mesh::{
@@ -44,12 +45,15 @@ pub(super) struct Prepared {
 /// What was asked for: a file, normals, a build, and the object or group.
 type Wanted = (PathBuf, u8, u8, Option<String>);
 
-/// All files of a scene, each read once, and each way of using one prepared once.
+/// All files of a scene, each read once, and each way of using one prepared once. A file is given away to the last thing
+/// that is [announced](Self::announce) to be made of it, so that it does not lie beside what is made.
 #[derive(Default)]
 pub(super) struct Meshes {
     /// Each with whether its warnings are still to be told.
     files: BTreeMap<PathBuf, (ObjFile, bool)>,
-    prepared: BTreeMap<Wanted, Vec<Prepared>>,
+    /// What is still to be prepared.
+    announced: BTreeSet<Wanted>,
+    prepared: BTreeMap<Wanted, Result<Vec<Prepared>, PrepareError>>,
 }
 
 /// Why a mesh can't be used.
@@ -88,6 +92,11 @@ impl Meshes {
         Self { files: BTreeMap::from([(path.to_owned(), (file, true))]), ..Self::default() }
     }
 
+    /// Says that [`prepare`](Self::prepare) is going to be asked for this.
+    pub(super) fn announce(&mut self, path: &Path, normals: Normals, build: Build, group: Option<&str>) {
+        self.announced.insert(wanted(path, normals, build, group));
+    }
+
     /// The parts of a file with the given normals, or of it the object or group of a name. `warn` takes what the file itself
     /// gives reason to say, once per file.
     pub(super) fn prepare(
@@ -97,7 +106,24 @@ impl Meshes {
         build: Build,
         group: Option<&str>,
         warn: &mut impl FnMut(&str),
-    ) -> Result<&[Prepared], PrepareError> {
+    ) -> Result<&[Prepared], &PrepareError> {
+        let key = wanted(path, normals, build, group);
+        if !self.prepared.contains_key(&key) {
+            self.announced.remove(&key);
+            let prepared = self.prepare_anew(path, normals, build, group, warn);
+            self.prepared.insert(key.clone(), prepared);
+        }
+        self.prepared[&key].as_ref().map(Vec::as_slice)
+    }
+
+    fn prepare_anew(
+        &mut self,
+        path: &Path,
+        normals: Normals,
+        build: Build,
+        group: Option<&str>,
+        warn: &mut impl FnMut(&str),
+    ) -> Result<Vec<Prepared>, PrepareError> {
         if !self.files.contains_key(path) {
             self.files.insert(path.to_owned(), (obj::read(path)?, true));
         }
@@ -106,26 +132,31 @@ impl Meshes {
         {
             file.warnings.iter().for_each(|w| warn(w));
         }
-        let key = (path.to_owned(), normals as u8, build as u8, group.map(str::to_owned));
-        if !self.prepared.contains_key(&key) {
-            let (file, _) = &self.files[path];
-            let parts = select(file, group).map_err(|present| PrepareError::NoGroup {
-                path: path.to_owned(),
-                name: group.unwrap_or_default().to_owned(),
-                present,
-            })?;
-            let prepared: Result<Vec<_>, _> =
-                parts.iter().map(|part| prepare(path, part, &file.materials, normals, build)).collect();
-            let prepared = prepared.map_err(|reason| PrepareError::Mesh { path: path.to_owned(), reason })?;
-            self.prepared.insert(key.clone(), prepared);
-        }
-        Ok(&self.prepared[&key])
+        let is_last = self.announced.iter().all(|other| other.0 != path);
+        let file = if is_last {
+            Cow::Owned(self.files.remove(path).expect("it has just been read").0)
+        } else {
+            Cow::Borrowed(&self.files[path].0)
+        };
+        let materials = file.materials.clone();
+        let parts = select(file, group).map_err(|present| PrepareError::NoGroup {
+            path: path.to_owned(),
+            name: group.unwrap_or_default().to_owned(),
+            present,
+        })?;
+        let prepared: Result<Vec<_>, _> =
+            parts.into_iter().map(|part| prepare(path, part, &materials, normals, build)).collect();
+        prepared.map_err(|reason| PrepareError::Mesh { path: path.to_owned(), reason })
     }
 }
 
+fn wanted(path: &Path, normals: Normals, build: Build, group: Option<&str>) -> Wanted {
+    (path.to_owned(), normals as u8, build as u8, group.map(str::to_owned))
+}
+
 /// The parts of a file that are used; `Err` lists the names that there are.
-fn select(file: &ObjFile, group: Option<&str>) -> Result<Vec<Part>, String> {
-    let Some(group) = group else { return Ok(file.parts.clone()) };
+fn select(file: Cow<'_, ObjFile>, group: Option<&str>) -> Result<Vec<Part>, String> {
+    let Some(group) = group else { return Ok(file.into_owned().parts) };
     let selected: Vec<Part> = file
         .parts
         .iter()
@@ -172,13 +203,13 @@ fn part_of(mesh: &MeshData, keep: impl Fn(usize) -> bool) -> MeshData {
 
 fn prepare(
     path: &Path,
-    part: &Part,
+    part: Part,
     materials: &[MtlMaterial],
     normals: Normals,
     build: Build,
 ) -> Result<Prepared, MeshError> {
-    TriangleMesh::check_positions(&part.mesh)?;
-    let mut data = part.mesh.clone();
+    let mut data = part.mesh;
+    TriangleMesh::check_positions(&data)?;
     // Numbers of the file become positions in the list of those that the part uses.
     let mut used: Vec<u32> = data.materials.clone();
     used.sort_unstable();
@@ -200,7 +231,7 @@ fn prepare(
         Normals::Flat => flat_normals(data),
         Normals::Smooth => smooth_normals(data),
     };
-    let mesh = TriangleMesh::with_build(&data, build)?;
+    let mesh = TriangleMesh::with_build(data, build)?;
     let report = MeshReport {
         object: String::new(),
         file: path.to_owned(),
@@ -211,5 +242,5 @@ fn prepare(
         mended: mended.iter().map(ToString::to_string).collect(),
         memory: mesh.memory(),
     };
-    Ok(Prepared { name: part.name.clone(), mesh: Arc::new(mesh), materials, report })
+    Ok(Prepared { name: part.name, mesh: Arc::new(mesh), materials, report })
 }
