@@ -13,6 +13,7 @@ use vitrum::tracer::{Settings, render};
 pub(crate) fn bench(criterion: &mut Criterion) {
     built_in_scene(criterion);
     glass_mesh(criterion);
+    paths(criterion);
 }
 
 fn picture(criterion: &mut Criterion, name: &str, loaded: &Loaded, size: [u32; 2], spp: u32) {
@@ -27,6 +28,13 @@ fn picture(criterion: &mut Criterion, name: &str, loaded: &Loaded, size: [u32; 2
 fn built_in_scene(criterion: &mut Criterion) {
     let loaded = scene_text("built-in scene", include_str!("../scenes/default.toml"), Path::new(""));
     picture(criterion, "pixel/built-in scene", &loaded.expect("the scene is valid"), [72, 48], 4);
+}
+
+/// Paths among balls of glass on a floor, under a lamp.
+fn paths(criterion: &mut Criterion) {
+    let text = include_str!("../tests/scenes/glass_on_a_floor.toml");
+    let loaded = scene_text("glass on a floor", text, Path::new(""));
+    picture(criterion, "pixel/paths around glass", &loaded.expect("the scene is valid"), [64, 48], 4);
 }
 
 /// What `vitrum render torus_knot.obj` shows: a mesh of 12 288 triangles with interpolated normals as glass.

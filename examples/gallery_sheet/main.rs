@@ -102,7 +102,7 @@ fn picture(
 ) -> Result<Vec<u8>, Box<dyn Error>> {
     let loaded = load::scene_file(&gallery.join(name).with_extension("toml"))?;
     let own = loaded.settings;
-    let settings = Settings { size, spp: SAMPLES, max_depth: max_depth.unwrap_or(own.max_depth), ..own };
+    let settings = Settings { size, spp: SAMPLES, max_depth: max_depth.or(own.max_depth), ..own };
     let rendering = render(&loaded.scene, &settings, &())?;
     Ok(rendering.film.image().into_iter().flat_map(|pixel| loaded.display.encode(pixel)).collect())
 }

@@ -26,7 +26,7 @@ fn straight_through_the_middle_each_depth_adds_its_paths() {
             keep(&mut desc, names);
             set_glass(&mut desc, 0.1, 0.9);
             surround_with_white(&mut desc);
-            desc.render.max_depth = depth;
+            desc.render.max_depth = Some(depth);
             desc.render.cutoff = 0.0;
             desc.camera.position = DVec3::new(x, 1.02, 5.0);
             desc.camera.target = DVec3::new(x, 1.02, 0.0);
@@ -67,7 +67,7 @@ fn the_rim_of_the_hollow_ball_is_bright_from_depth_three_on() {
     keep(&mut desc, &["hollow, inside", "hollow, outside"]);
     set_glass(&mut desc, 0.1, 0.9);
     surround_with_white(&mut desc);
-    desc.render.max_depth = 3;
+    desc.render.max_depth = Some(3);
     desc.camera.position = DVec3::new(1.15, 1.02, 5.0);
     desc.camera.target = DVec3::new(1.15, 1.02, 0.0);
     let (size, height) = (120u32, 2.2);
@@ -94,7 +94,7 @@ fn no_pixel_gets_darker_with_depth() {
     let mut desc = described("05_depth");
     let mut shallower = vec![[0.0; 3]; 96 * 54];
     for depth in 0..=6 {
-        desc.render.max_depth = depth;
+        desc.render.max_depth = Some(depth);
         let deeper = picture(&desc, [96, 54], 2);
         for (a, b) in shallower.iter().zip(&deeper) {
             assert!((0..3).all(|c| b[c] >= a[c] * (1.0 - 3e-7)), "{a:?} became {b:?} at depth {depth}");

@@ -19,7 +19,7 @@ fn the_disc_shows_one_minus_what_the_depth_limit_cuts() {
                 let settings = Settings {
                     size: [size; 2],
                     spp: 4,
-                    max_depth: depth,
+                    max_depth: Some(depth),
                     cutoff: 0.0,
                     ..Settings::default()
                 };
@@ -58,7 +58,8 @@ fn the_weight_given_up_is_the_missing_light() {
     // Narrow enough to see nothing but the sphere.
     let scene = white(vec![glass], camera(Projection::Orthographic { height: 1.0 }, 10.0));
     for (max_depth, cutoff) in [(3, 0.0), (8, 0.05)] {
-        let settings = Settings { size: [16; 2], spp: 8, max_depth, cutoff, ..Settings::default() };
+        let settings =
+            Settings { size: [16; 2], spp: 8, max_depth: Some(max_depth), cutoff, ..Settings::default() };
         let rendering = vitrum::tracer::render(&scene, &settings, &()).expect("valid settings");
         let image = rendering.film.image();
         let mean: f64 = image.iter().map(|p| f64::from(p[0])).sum::<f64>() / image.len() as f64;

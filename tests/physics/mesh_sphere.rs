@@ -11,7 +11,7 @@ use vitrum::math::{DVec3, Ray, unit};
 use vitrum::tracer::{Projection, Scene};
 
 /// The octahedron, each face divided `level` times into four, on the unit sphere.
-fn subdivided(level: u32, smooth: bool) -> Shape {
+pub(crate) fn subdivided(level: u32, smooth: bool) -> Shape {
     let mut positions = vec![DVec3::X, DVec3::Y, DVec3::Z, -DVec3::X, -DVec3::Y, -DVec3::Z];
     let mut triangles: Vec<[u32; 3]> =
         vec![[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];

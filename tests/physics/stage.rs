@@ -3,7 +3,7 @@
 use vitrum::bxdf::Interface;
 use vitrum::geometry::shape::{Shape, Sphere};
 use vitrum::geometry::{Object, Side};
-use vitrum::materials::{Material, Phong, Transparent};
+use vitrum::materials::{Material, Media, Phong, Transparent};
 use vitrum::math::{DVec3, Rgb, Transform};
 use vitrum::tracer::{Background, Camera, Projection, Scene, SceneObject, Settings, render};
 
@@ -14,6 +14,7 @@ pub(crate) fn clear_glass(kr: f64, kt: f64, outside: f64, inside: f64) -> Materi
         kr: Rgb::splat(kr),
         kt: Rgb::splat(kt),
         interface,
+        media: Media::CLEAR,
     })
 }
 

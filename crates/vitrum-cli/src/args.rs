@@ -5,7 +5,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::{Path, PathBuf};
 use vitrum_io::load::{ModelMaterial, ModelOptions};
 use vitrum_io::scene::Normals;
-use vitrum_tracer::Crop;
+use vitrum_math::Sequence;
+use vitrum_tracer::{Branching, Crop, Integrator, LightSampling};
 
 /// Renders glass, accurately and fast.
 #[derive(Debug, Parser)]
@@ -61,11 +62,31 @@ pub(crate) struct Render {
     #[arg(long, value_name = "N", value_parser = whole::<1, 1_000_000>, allow_negative_numbers = true)]
     pub(crate) spp: Option<u32>,
 
-    /// Deepest ray of a tree, in place of the scene's; the camera ray has depth 0
+    /// How light is followed, in place of the scene's choice
+    #[arg(long, value_enum, value_name = "I")]
+    pub(crate) integrator: Option<IntegratorChoice>,
+
+    /// How many of the rays that glass divides a path follows, in place of the scene's choice
+    #[arg(long, value_enum, value_name = "B")]
+    pub(crate) branching: Option<BranchingChoice>,
+
+    /// Largest value of a sample: hides rare bright samples, and the light that they stand for (biased; off unless given)
+    #[arg(long, value_name = "L", value_parser = positive, allow_negative_numbers = true)]
+    pub(crate) clamp: Option<f64>,
+
+    /// How paths find the light of objects that shine, for study
+    #[arg(long, value_enum, value_name = "S", default_value_t = LightSamplingChoice::Mis)]
+    pub(crate) light_sampling: LightSamplingChoice,
+
+    /// Random numbers, for study
+    #[arg(long, value_enum, value_name = "S", default_value_t = SequenceChoice::Sobol)]
+    pub(crate) sequence: SequenceChoice,
+
+    /// Deepest ray, in place of the scene's; the camera ray has depth 0
     #[arg(long, value_name = "N", value_parser = whole::<0, 1000>, allow_negative_numbers = true)]
     pub(crate) max_depth: Option<u32>,
 
-    /// Weight below which subtrees are given up, in place of the scene's (0 to 1)
+    /// Weight below which subtrees of ray trees are given up, in place of the scene's (0 to 1)
     #[arg(long, value_name = "W", value_parser = unit_interval, allow_negative_numbers = true)]
     pub(crate) cutoff: Option<f64>,
 
@@ -121,6 +142,80 @@ pub(crate) struct Model {
     /// Normals that the model is shaded with [default: the file's, else smooth]
     #[arg(long, value_enum, value_name = "N")]
     pub(crate) normals: Option<NormalsChoice>,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum IntegratorChoice {
+    /// The ray tree of mirrors and glass
+    Whitted,
+    /// Light on all its ways
+    Path,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum BranchingChoice {
+    /// One, by chance
+    One,
+    /// All at the first hit, then one
+    First,
+    /// All, while they weigh enough
+    Tree,
+}
+
+impl From<IntegratorChoice> for Integrator {
+    fn from(choice: IntegratorChoice) -> Self {
+        match choice {
+            IntegratorChoice::Whitted => Self::Whitted,
+            IntegratorChoice::Path => Self::Path,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum LightSamplingChoice {
+    /// By asking for it and by meeting it
+    Mis,
+    /// By asking for it
+    Lights,
+    /// By meeting it
+    Bsdf,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum SequenceChoice {
+    /// Those of the samples of a pixel fill the unit square evenly
+    Sobol,
+    /// Each by itself
+    Independent,
+}
+
+impl From<LightSamplingChoice> for LightSampling {
+    fn from(choice: LightSamplingChoice) -> Self {
+        match choice {
+            LightSamplingChoice::Mis => Self::Mis,
+            LightSamplingChoice::Lights => Self::Lights,
+            LightSamplingChoice::Bsdf => Self::Bsdf,
+        }
+    }
+}
+
+impl From<SequenceChoice> for Sequence {
+    fn from(choice: SequenceChoice) -> Self {
+        match choice {
+            SequenceChoice::Sobol => Self::Sobol,
+            SequenceChoice::Independent => Self::Independent,
+        }
+    }
+}
+
+impl From<BranchingChoice> for Branching {
+    fn from(choice: BranchingChoice) -> Self {
+        match choice {
+            BranchingChoice::One => Self::One,
+            BranchingChoice::First => Self::First,
+            BranchingChoice::Tree => Self::Tree,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -201,6 +296,11 @@ fn seed(text: &str) -> Result<u64, String> {
 fn unit_interval(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|n| (0.0..=1.0).contains(n));
     number.ok_or_else(|| "expected a number from 0 to 1".to_owned())
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|n: &f64| *n > 0.0 && n.is_finite());
+    number.ok_or_else(|| "expected a number above 0, such as 10".to_owned())
 }
 
 fn index(text: &str) -> Result<f64, String> {

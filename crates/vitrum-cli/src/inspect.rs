@@ -10,7 +10,7 @@ use std::process::ExitCode;
 use vitrum_io::load::{Loaded, MeshReport};
 use vitrum_materials::{Material, Phong, Texture};
 use vitrum_math::{DVec3, Rgb};
-use vitrum_tracer::{Falloff, Light, Plan, Projection};
+use vitrum_tracer::{Branching, Falloff, Integrator, Light, Plan, Projection, Settings};
 
 pub(crate) fn run(arguments: &Inspect) -> Result<ExitCode, Failure> {
     let loaded = input::load(arguments.scene.as_deref(), &arguments.model, None)?;
@@ -27,10 +27,9 @@ fn describe(out: &mut String, loaded: &Loaded) -> std::fmt::Result {
     let [width, height] = settings.size;
     writeln!(
         out,
-        "picture    {width} x {height}, {} per pixel, depth {}, cut-off {}, seed {}",
+        "picture    {width} x {height}, {} per pixel, {}, seed {}",
         count(settings.spp as usize, "sample"),
-        settings.max_depth,
-        settings.cutoff,
+        method(settings),
         settings.seed
     )?;
     let projection = match *scene.camera.projection() {
@@ -56,11 +55,30 @@ fn describe(out: &mut String, loaded: &Loaded) -> std::fmt::Result {
     }
     writeln!(out)?;
     objects(out, loaded)?;
-    plan(out, &Plan::new(scene, settings), loaded)?;
+    plan(out, &Plan::new(scene, settings), loaded, settings.integrator)?;
     if !loaded.warnings.is_empty() {
         write!(out, "\n{}", loaded.warnings)?;
     }
     Ok(())
+}
+
+/// How light is followed.
+fn method(settings: &Settings) -> String {
+    let depth = match settings.deepest() {
+        u32::MAX => "any depth".to_owned(),
+        deepest => format!("depth {deepest}"),
+    };
+    match settings.integrator {
+        Integrator::Whitted => format!("ray trees, {depth}, cut-off {}", settings.cutoff),
+        Integrator::Path => {
+            let followed = match settings.branching {
+                Branching::One => "one ray",
+                Branching::First => "all rays at the first hit, then one,",
+                Branching::Tree => "all rays that weigh enough",
+            };
+            format!("paths, {depth}, {followed} of those that glass divides")
+        }
+    }
 }
 
 fn objects(out: &mut String, loaded: &Loaded) -> std::fmt::Result {
@@ -106,18 +124,25 @@ fn describe_mesh(out: &mut String, mesh: &MeshReport) -> std::fmt::Result {
 }
 
 /// A line for each feature: used or skipped.
-fn plan(out: &mut String, plan: &Plan, loaded: &Loaded) -> std::fmt::Result {
+fn plan(out: &mut String, plan: &Plan, loaded: &Loaded, integrator: Integrator) -> std::fmt::Result {
     writeln!(out, "\nplan")?;
     let objects = loaded.scene.names().len();
-    let rows: [(&str, bool, String); 11] = [
-        (
-            "lights",
-            plan.lights > 0,
-            format!("{} asked at each point that reflects", count(plan.lights, "light")),
+    let asked = match integrator {
+        Integrator::Whitted => format!("{} asked at each point that reflects", count(plan.lights, "light")),
+        Integrator::Path => format!(
+            "one of {} ({}) asked at each point that scatters",
+            count(plan.lights, "light"),
+            count(plan.area_lights, "shining object")
         ),
+    };
+    let rows: [(&str, bool, String); 14] = [
+        ("lights", plan.lights > 0, asked),
         ("shadow rays", plan.shadow_lights > 0, format!("towards {}", count(plan.shadow_lights, "light"))),
         ("ambient", plan.ambient, "added at each hit".to_owned()),
         ("refraction", plan.dielectrics, "trees of rays".to_owned()),
+        ("absorption", plan.absorption, "a factor for each segment".to_owned()),
+        ("thin sheets", plan.thin_sheets, "light that is asked for goes through".to_owned()),
+        ("rough glass, metal", plan.rough, "scattered rays".to_owned()),
         ("mirrors", plan.mirrors, "reflected rays".to_owned()),
         ("textures", plan.textures, "looked up at each hit".to_owned()),
         ("meshes", plan.meshes > 0, count(plan.meshes, "mesh tree")),
@@ -128,10 +153,10 @@ fn plan(out: &mut String, plan: &Plan, loaded: &Loaded) -> std::fmt::Result {
     ];
     for (feature, used, how) in rows {
         let how = if used { how } else { "skipped".to_owned() };
-        writeln!(out, "  {feature:<17} {how}")?;
+        writeln!(out, "  {feature:<18} {how}")?;
     }
     if plan.invisible > 0 {
-        writeln!(out, "  {:<17} {} left out", "invisible", count(plan.invisible, "object"))?;
+        writeln!(out, "  {:<18} {} left out", "invisible", count(plan.invisible, "object"))?;
     }
     Ok(())
 }
@@ -145,6 +170,13 @@ fn describe_light(light: &Light) -> String {
             };
             format!("point at {}, intensity {}, {falloff}", point(*position), colour(*intensity))
         }
+        Light::Spot { position, axis, intensity, cos_outer, .. } => format!(
+            "spot at {} towards {}, {:.3}° wide, intensity {}",
+            point(*position),
+            point(*axis),
+            2.0 * cos_outer.acos().to_degrees(),
+            colour(*intensity)
+        ),
         Light::Directional { towards, irradiance, .. } => {
             format!("from direction {}, irradiance {}", point(*towards), colour(*irradiance))
         }
@@ -158,6 +190,29 @@ fn describe_material(material: &Material) -> String {
         Material::Reflective { kr, .. } => format!("reflective kr {}{phong}", colour(*kr)),
         Material::Transparent(t) => {
             format!("transparent ior {} kr {} kt {}{phong}", t.interface.eta(), colour(t.kr), colour(t.kt))
+        }
+        Material::Dielectric(glass) => {
+            let roughness = if glass.is_smooth() { "" } else { ", rough" };
+            let absorbs = match glass.media.inside {
+                clear if clear.is_none() => String::new(),
+                inside => format!(", sigma_a {} per metre inside", colour(inside.sigma_a())),
+            };
+            format!("dielectric, index {} inside over outside{roughness}{absorbs}", glass.interface().eta())
+        }
+        Material::Thin(sheet) => {
+            format!(
+                "thin sheet, index {}, transmittance {}",
+                sheet.interface.eta(),
+                colour(sheet.transmittance)
+            )
+        }
+        Material::Conductor(metal) => {
+            let roughness = if metal.is_specular() {
+                String::new()
+            } else {
+                format!(", roughness {}", metal.roughness.alpha_x())
+            };
+            format!("conductor n {} k {}{roughness}", colour(metal.index.n()), colour(metal.index.k()))
         }
         Material::Emissive { radiance } => format!("emissive {}", texture(radiance)),
     }

@@ -11,7 +11,11 @@ use std::process::ExitCode;
 use std::time::Instant;
 use vitrum_io::image::{self, ImageView};
 use vitrum_io::load::Loaded;
-use vitrum_tracer::{RenderError, Settings, ShadowMode, on_threads, render};
+use vitrum_materials::Material;
+use vitrum_math::{Rgb, Sequence};
+use vitrum_tracer::{
+    Branching, Integrator, LightSampling, RenderError, Settings, ShadowMode, on_threads, render,
+};
 
 /// The clock of the program: the libraries have none.
 #[expect(clippy::disallowed_methods, reason = "the program shows how long it takes")]
@@ -30,6 +34,7 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
         say(&loaded.warnings.to_string());
     }
     let settings = settings(&loaded, arguments);
+    check_integrator(&loaded, settings.integrator)?;
     let loading = start.elapsed();
 
     let area = settings.area();
@@ -68,12 +73,41 @@ fn settings(loaded: &Loaded, arguments: &Render) -> Settings {
         size: arguments.size.unwrap_or(scene.size),
         crop: arguments.crop,
         spp: arguments.spp.unwrap_or(scene.spp),
-        max_depth: arguments.max_depth.unwrap_or(scene.max_depth),
+        max_depth: arguments.max_depth.or(scene.max_depth),
+        integrator: arguments.integrator.map_or(scene.integrator, Into::into),
+        branching: arguments.branching.map_or(scene.branching, Into::into),
+        light_sampling: arguments.light_sampling.into(),
+        sequence: arguments.sequence.into(),
+        clamp: arguments.clamp,
         cutoff: arguments.cutoff.unwrap_or(scene.cutoff),
         seed: arguments.seed.unwrap_or(scene.seed),
         threads: arguments.threads as usize,
         tile: arguments.tile,
         ..*scene
+    }
+}
+
+/// A scene that was written for one way of following light may not do for the other.
+fn check_integrator(loaded: &Loaded, integrator: Integrator) -> Result<(), Failure> {
+    let scene = &loaded.scene;
+    match integrator {
+        Integrator::Path if scene.ambient != Rgb::ZERO => Err(Failure::usage(
+            "--integrator path: the scene has an ambient light, which paths don't know; light it by a background, or use \
+             whitted"
+                .to_owned(),
+        )),
+        Integrator::Path if loaded.settings.shadow == ShadowMode::Straight => Err(Failure::usage(
+            "--integrator path: the scene has straight shadows, which paths don't know; use whitted".to_owned(),
+        )),
+        Integrator::Whitted => {
+            let rough = (0u32..).zip(scene.names()).find(|(id, _)| scene.materials_of(*id).iter().any(Material::is_rough));
+            rough.map_or(Ok(()), |(_, name)| {
+                Err(Failure::usage(format!(
+                    "--integrator whitted: `{name}` is rough, and a ray tree can't follow light that it scatters; use path"
+                )))
+            })
+        }
+        Integrator::Path => Ok(()),
     }
 }
 
@@ -94,18 +128,47 @@ fn metadata(settings: &Settings, samples: u32) -> Vec<(String, String)> {
         ShadowMode::Opaque => "opaque",
         ShadowMode::Straight => "straight (biased)",
     };
+    let branching = match settings.branching {
+        Branching::One => "one",
+        Branching::First => "first",
+        Branching::Tree => "tree",
+    };
+    let depth = settings.deepest();
     let [width, height] = settings.size;
     let pair = |key: &str, value: String| (key.to_owned(), value);
     let mut pairs = vec![
         pair("version", env!("CARGO_PKG_VERSION").to_owned()),
-        pair("integrator", "whitted".to_owned()),
+        pair(
+            "integrator",
+            match settings.integrator {
+                Integrator::Whitted => "whitted".to_owned(),
+                Integrator::Path => "path".to_owned(),
+            },
+        ),
         pair("size", format!("{width}x{height}")),
         pair("spp", samples.to_string()),
-        pair("max_depth", settings.max_depth.to_string()),
-        pair("cutoff", settings.cutoff.to_string()),
+        pair("max_depth", if depth == u32::MAX { "none".to_owned() } else { depth.to_string() }),
         pair("seed", settings.seed.to_string()),
-        pair("shadow", shadow.to_owned()),
     ];
+    if let Some(most) = settings.clamp {
+        pairs.push(pair("clamp", format!("{most} (biased)")));
+    }
+    if settings.sequence == Sequence::Independent {
+        pairs.push(pair("sequence", "independent".to_owned()));
+    }
+    pairs.extend(match settings.integrator {
+        Integrator::Whitted => {
+            [pair("cutoff", settings.cutoff.to_string()), pair("shadow", shadow.to_owned())].to_vec()
+        }
+        Integrator::Path => {
+            let light_sampling = match settings.light_sampling {
+                LightSampling::Mis => "mis",
+                LightSampling::Lights => "lights",
+                LightSampling::Bsdf => "bsdf",
+            };
+            vec![pair("branching", branching.to_owned()), pair("light_sampling", light_sampling.to_owned())]
+        }
+    });
     if let Some(crop) = settings.crop {
         pairs.push(pair("crop", format!("{},{},{},{}", crop.x, crop.y, crop.width, crop.height)));
     }

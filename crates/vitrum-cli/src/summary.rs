@@ -71,6 +71,12 @@ pub(crate) fn summary(rendering: &Rendering, phases: &Phases, output: &Path) -> 
             given_up.mean, given_up.largest
         ),
     );
+    if stats.guarded > 0 {
+        line(
+            "guarded",
+            format!("{} rays of very long paths or large trees went on by roulette", stats.guarded),
+        );
+    }
     if stats.geometry.neighbours_ignored > 0 || stats.normal_fallbacks > 0 {
         line(
             "rare",

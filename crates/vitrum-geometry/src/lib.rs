@@ -20,6 +20,7 @@
 //! returned is the smallest (t, object, face), whatever the shape of the tree.
 
 mod aggregate;
+mod area_sampler;
 mod departure;
 mod interaction;
 pub mod mesh;
@@ -30,6 +31,7 @@ mod spheres;
 mod wide;
 
 pub use aggregate::{Aggregate, Counters, Hit};
+pub use area_sampler::{AreaSample, AreaSampler};
 pub use departure::{Departure, Query};
 pub use interaction::{Side, SurfaceInteraction};
 pub use object::Object;

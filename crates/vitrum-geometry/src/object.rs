@@ -52,6 +52,11 @@ impl Object {
         &self.shape
     }
 
+    /// What puts the shape in its place; `None` where the shape itself stands in world space.
+    pub(crate) fn transform(&self) -> Option<&Transform> {
+        self.transform.as_ref()
+    }
+
     /// The sphere, when the object is one that needs no transform.
     pub(crate) fn as_sphere(&self) -> Option<&Sphere> {
         match (&self.shape, &self.transform) {

@@ -24,7 +24,7 @@ fn show(path: &Path, material: ModelMaterial, refused: Option<&str>) -> Result<(
     if meshes.iter().any(|mesh| !mesh.closed && mesh.findings.is_empty()) {
         return Err("is not closed, and nothing says why".to_owned());
     }
-    let settings = Settings { size: [24, 24], spp: 1, max_depth: 6, ..settings };
+    let settings = Settings { size: [24, 24], spp: 1, max_depth: Some(6), ..settings };
     let rendering = render(&scene, &settings, &()).map_err(|error| error.to_string())?;
     let (pixels, stats) = (rendering.film.image(), &rendering.stats);
     let is_seen = material != ModelMaterial::Glass || stats.transmitted_rays > 0;

@@ -25,7 +25,8 @@ fn table() -> Vec<Vec<String>> {
 fn required(material: &str) -> &'static str {
     match material {
         "reflective" => "kr = 0.5",
-        "transparent" => "ior = 1.5",
+        "transparent" | "dielectric" | "thin" => "ior = 1.5",
+        "conductor" => "n = 0.2, k = 3",
         "emissive" => "radiance = 1",
         _ => "color = 0.5",
     }
@@ -44,20 +45,31 @@ fn every_material_renders_with_every_integrator_as_the_table_says() {
     assert_eq!(integrators, known, "one column for each integrator of the schema");
     for row in &table[1..] {
         for (integrator, cell) in integrators.iter().zip(&row[1..]) {
-            let text = format!(
-                "[render]\nintegrator = \"{integrator}\"\n\
+            let ambient = "[[light]]\ntype = \"ambient\"\nradiance = 0.1\n";
+            let text = |more: &str| {
+                format!(
+                    "[render]\nintegrator = \"{integrator}\"\n\
                  [camera]\ntype = \"pinhole\"\nposition = [0, 0, 5]\ntarget = [0, 0, 0]\nfov = 40\n\
                  [background]\ntype = \"constant\"\ncolor = 1\n\
-                 [[light]]\ntype = \"ambient\"\nradiance = 0.1\n\
-                 [[light]]\ntype = \"point\"\nposition = [3, 3, 5]\nintensity = 30\n\
+                 {}[[light]]\ntype = \"point\"\nposition = [3, 3, 5]\nintensity = 30\n\
                  [[object]]\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\n\
-                 material = {{ type = \"{}\", {} }}\n",
-                row[0],
-                required(&row[0])
+                 material = {{ type = \"{}\", {}{more} }}\n",
+                    if *integrator == "path" { "" } else { ambient },
+                    row[0],
+                    required(&row[0])
+                )
+            };
+            let loaded = load::scene_text("table", &text(""), Path::new(""))
+                .unwrap_or_else(|e| panic!("{}: {e}", row[0]));
+            assert!(cell.starts_with("renders"), "the table says: {cell}");
+            let refused = load::scene_text("table", &text(", roughness = 0.3"), Path::new(""));
+            let is_rough = matches!(&*row[0], "dielectric" | "conductor");
+            assert_eq!(
+                cell.contains("refused when it is rough"),
+                is_rough && refused.is_err(),
+                "{}: {cell}",
+                row[0]
             );
-            let loaded =
-                load::scene_text("table", &text, Path::new("")).unwrap_or_else(|e| panic!("{}: {e}", row[0]));
-            assert!(cell.starts_with("renders"), "no pair is refused yet, the table says: {cell}");
             let settings = Settings { size: [16, 16], spp: 2, ..loaded.settings };
             let rendering = render(&loaded.scene, &settings, &()).expect("valid settings");
             assert_eq!(rendering.stats.dropped, 0);

@@ -116,6 +116,10 @@ fn a_default_is_what_its_text_says_when_written_out() {
             for key in table.keys_with(variant).filter(|key| matches!(key.default, KeyDefault::Required)) {
                 short += &format!("{} = {}\n", key.name, sample(key));
             }
+            if variant.is_some_and(|variant| variant.name == "dielectric") {
+                // One of three keys is required.
+                short += "ior = 1.5\n";
+            }
             let mut long = short.clone();
             for key in table.keys_with(variant) {
                 if let KeyDefault::Toml(text) = key.default {
@@ -136,15 +140,16 @@ fn a_default_is_what_its_text_says_when_written_out() {
 fn settings_arrive() {
     let scene = scene_of(&format!(
         "version = 1\n[render]\nsize = [0x10, 1_000]\nspp = 4\nmax_depth = 0\ncutoff = 0\n\
-         seed = 18446744073709551615\nshadow = \"straight\"\n[output]\nexposure = -1\ntone = \"neutral\"\n{CAMERA}"
+         seed = 18446744073709551615\nintegrator = \"whitted\"\nshadow = \"straight\"\n[output]\nexposure = -1\ntone = \"neutral\"\n{CAMERA}"
     ));
     let render = Render {
         size: [16, 1000],
         spp: 4,
-        max_depth: 0,
+        max_depth: Some(0),
         cutoff: 0.0,
         seed: u64::MAX,
-        integrator: Integrator::Whitted,
+        integrator: Some(Integrator::Whitted),
+        branching: Branching::Tree,
         shadow: Shadow::Straight,
     };
     assert_eq!(scene.render, render);
@@ -155,7 +160,7 @@ fn settings_arrive() {
 fn defaults_in_code_are_those_of_a_file_that_says_nothing() {
     let scene = scene_of(CAMERA);
     assert_eq!(scene, SceneDesc::new(scene.camera.clone()));
-    assert_eq!((scene.render.size, scene.render.spp, scene.render.max_depth), ([640, 480], 16, 10));
+    assert_eq!((scene.render.size, scene.render.spp, scene.render.max_depth), ([640, 480], 16, None));
 }
 
 #[test]
@@ -339,5 +344,17 @@ proptest! {
             }
         }
         prop_assert!(!problems.to_string().contains('\t'));
+    }
+}
+
+/// Found by the test above: the value of a statement that ends with the text.
+#[test]
+fn an_open_bracket_at_the_end_is_told_within_the_text() {
+    for text in ["a = 1\n''==[{\u{e9}", "a = [", "a = [\u{e9}"] {
+        let (scene, problems) = scene::parse("test.toml", text);
+        assert!(scene.is_none() && problems.has_errors());
+        for place in (&problems).into_iter().filter_map(|problem| problem.place.as_ref()) {
+            assert!(place.span.end <= text.len(), "{text:?}: {:?}", place.span);
+        }
     }
 }

@@ -4,12 +4,14 @@
 //! becomes [`Scattering`]: what the surface emits, what it makes of ambient light, and the models of `vitrum-bxdf` that
 //! answer for everything else.
 
+mod absorption;
 mod index;
 mod material;
 mod scattering;
 mod texture;
 
+pub use absorption::{Absorption, InvalidAbsorption};
 pub use index::{IndexOfRefraction, InvalidIndex};
-pub use material::{Material, Phong, Transparent};
+pub use material::{Dielectric, Material, Media, Phong, Transparent};
 pub use scattering::Scattering;
 pub use texture::{Axes, Checker, Texture};

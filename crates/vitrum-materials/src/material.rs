@@ -1,8 +1,11 @@
 //! The closed family of materials.
 
-use crate::Texture;
 use crate::scattering::{Scattering, unless_zero};
-use vitrum_bxdf::{Bxdf, GlossySpecular, Interface, Lambertian, PerfectSpecular, PerfectTransmitter};
+use crate::{Absorption, Texture};
+use vitrum_bxdf::{
+    Bxdf, Conductor, FresnelDielectric, Ggx, GlossySpecular, Interface, Lambertian, PerfectSpecular,
+    PerfectTransmitter, RoughDielectric, ThinDielectric,
+};
 use vitrum_math::{DVec3, Rgb};
 
 /// What a surface is made of.
@@ -21,8 +24,13 @@ pub enum Material {
     },
     /// Phong, and glass with constant coefficients.
     Transparent(Transparent),
-    /// Sends out light on its front side. It is seen, directly and in glass, but it lights nothing: it is no light source
-    /// that shadow rays look for.
+    /// Glass and other clear media with Fresnel's reflectance, smooth or rough.
+    Dielectric(Dielectric),
+    /// A sheet of glass without thickness.
+    Thin(ThinDielectric<f64>),
+    /// Metal, smooth or rough.
+    Conductor(Conductor<f64>),
+    /// Sends out light on its front side.
     Emissive {
         /// Radiance.
         radiance: Texture,
@@ -61,6 +69,66 @@ pub struct Transparent {
     pub kt: Rgb,
     /// The medium outside (above) and inside (below).
     pub interface: Interface<f64>,
+    /// What both absorb.
+    pub media: Media,
+}
+
+/// The surface of glass, as Fresnel's equations have it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dielectric {
+    /// Reflects and refracts.
+    bxdf: Bxdf<f64>,
+    interface: Interface<f64>,
+    /// What the media absorb.
+    pub media: Media,
+}
+
+/// What is absorbed on either side of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Media {
+    /// On the side that the normal points to.
+    pub outside: Absorption,
+    /// On the other.
+    pub inside: Absorption,
+}
+
+impl Media {
+    /// Clear on both sides.
+    pub const CLEAR: Self = Self { outside: Absorption::NONE, inside: Absorption::NONE };
+}
+
+impl Dielectric {
+    /// A surface between the indices of `interface`, outside above, as rough as `roughness` says; `media` absorb.
+    pub fn new(interface: Interface<f64>, roughness: Ggx<f64>, media: Media) -> Self {
+        let bxdf = if roughness.is_smooth() {
+            Bxdf::FresnelDielectric(FresnelDielectric { interface })
+        } else {
+            Bxdf::RoughDielectric(RoughDielectric::new(interface, roughness))
+        };
+        Self { bxdf, interface, media }
+    }
+
+    /// The same without what makes up for the energy of repeated scattering in the roughness.
+    #[must_use]
+    pub fn single_scattering(self) -> Self {
+        match self.bxdf {
+            Bxdf::RoughDielectric(rough) => {
+                let single = RoughDielectric::single_scattering(self.interface, *rough.roughness());
+                Self { bxdf: Bxdf::RoughDielectric(single), ..self }
+            }
+            _ => self,
+        }
+    }
+
+    /// The pair of indices.
+    pub fn interface(&self) -> &Interface<f64> {
+        &self.interface
+    }
+
+    /// True where it has no roughness that scatters.
+    pub fn is_smooth(&self) -> bool {
+        self.bxdf.is_specular()
+    }
 }
 
 impl Phong {
@@ -68,7 +136,7 @@ impl Phong {
     pub const NONE: Self =
         Self { colour: Texture::Constant(Rgb::ONE), ka: 0.0, kd: 0.0, ks: Rgb::ZERO, exponent: 1.0 };
 
-    #[inline]
+    #[inline(always)]
     fn scattering(&self, point: DVec3) -> Scattering {
         let colour = if self.ka == 0.0 && self.kd == 0.0 { Rgb::ZERO } else { self.colour.at(point) };
         let reflectance = colour * self.kd;
@@ -88,19 +156,42 @@ impl Phong {
 
 impl Material {
     /// The models at a point of the world.
-    #[inline]
+    // Always, because what it returns is large and would be copied.
+    #[inline(always)]
     pub fn scattering(&self, point: DVec3) -> Scattering {
         match self {
             Self::Matte(phong) | Self::Phong(phong) => phong.scattering(point),
             Self::Reflective { phong, kr } => Scattering {
-                specular: unless_zero(*kr, Bxdf::PerfectSpecular(PerfectSpecular { kr: *kr })),
+                body: unless_zero(*kr, Bxdf::PerfectSpecular(PerfectSpecular { kr: *kr })),
                 ..phong.scattering(point)
             },
             Self::Transparent(t) => {
                 let glass = PerfectTransmitter { kr: t.kr, kt: t.kt, interface: t.interface };
-                Scattering { specular: Some(Bxdf::PerfectTransmitter(glass)), ..t.phong.scattering(point) }
+                Scattering { body: Some(Bxdf::PerfectTransmitter(glass)), ..t.phong.scattering(point) }
             }
+            Self::Dielectric(glass) => Scattering::of(glass.bxdf),
+            Self::Thin(sheet) => Scattering::of(Bxdf::ThinDielectric(*sheet)),
+            Self::Conductor(metal) => Scattering::of(Bxdf::Conductor(*metal)),
             Self::Emissive { radiance } => Scattering { emitted: radiance.at(point), ..Scattering::BLACK },
+        }
+    }
+
+    /// What the media on both sides absorb, where the surface divides two.
+    #[inline]
+    pub fn media(&self) -> Option<&Media> {
+        match self {
+            Self::Transparent(t) => Some(&t.media),
+            Self::Dielectric(glass) => Some(&glass.media),
+            _ => None,
+        }
+    }
+
+    /// The pair of indices, where the surface divides two media.
+    pub fn interface(&self) -> Option<&Interface<f64>> {
+        match self {
+            Self::Transparent(t) => Some(&t.interface),
+            Self::Dielectric(glass) => Some(&glass.interface),
+            _ => None,
         }
     }
 
@@ -109,7 +200,11 @@ impl Material {
     pub fn is_invisible(&self) -> bool {
         match self {
             Self::Transparent(t) => {
-                t.phong.is_nothing() && t.kr == Rgb::ZERO && t.kt == Rgb::ONE && t.interface.is_matched()
+                let clear = t.phong.is_nothing() && t.kr == Rgb::ZERO && t.kt == Rgb::ONE;
+                clear && t.interface.is_matched() && t.media.outside == t.media.inside
+            }
+            Self::Dielectric(glass) => {
+                glass.interface.is_matched() && glass.media.outside == glass.media.inside
             }
             _ => false,
         }
@@ -119,13 +214,26 @@ impl Material {
     pub fn straight_transmittance(&self) -> Rgb {
         match self {
             Self::Transparent(t) => t.kt,
+            // What goes straight through at a right angle; the rest of a straight shadow's errors is larger.
+            Self::Dielectric(glass) => Rgb::splat(1.0 - glass.interface.reflectance(1.0).unpolarised()),
+            Self::Thin(sheet) => sheet.shares(1.0).1,
             _ => Rgb::ZERO,
         }
     }
 
     /// True for glass: rays are refracted, and the object needs an inside.
     pub fn is_dielectric(&self) -> bool {
-        matches!(self, Self::Transparent(_))
+        self.interface().is_some()
+    }
+
+    /// True where light may be scattered into a range of directions about the mirror or refracted direction, which a ray
+    /// tree of two children can't follow.
+    pub fn is_rough(&self) -> bool {
+        match self {
+            Self::Dielectric(glass) => !glass.is_smooth(),
+            Self::Conductor(metal) => !metal.is_specular(),
+            _ => false,
+        }
     }
 
     /// The Phong part, where there is one.
@@ -133,7 +241,7 @@ impl Material {
         match self {
             Self::Matte(phong) | Self::Phong(phong) | Self::Reflective { phong, .. } => Some(phong),
             Self::Transparent(t) => Some(&t.phong),
-            Self::Emissive { .. } => None,
+            Self::Dielectric(_) | Self::Thin(_) | Self::Conductor(_) | Self::Emissive { .. } => None,
         }
     }
 
@@ -144,6 +252,9 @@ impl Material {
             Self::Phong(_) => "phong",
             Self::Reflective { .. } => "reflective",
             Self::Transparent(_) => "transparent",
+            Self::Dielectric(_) => "dielectric",
+            Self::Thin(_) => "thin",
+            Self::Conductor(_) => "conductor",
             Self::Emissive { .. } => "emissive",
         }
     }
@@ -155,7 +266,7 @@ mod tests {
 
     fn clear(ior: f64) -> Transparent {
         let interface = Interface::new(1.0, ior).expect("valid");
-        Transparent { phong: Phong::NONE, kr: Rgb::ZERO, kt: Rgb::ONE, interface }
+        Transparent { phong: Phong::NONE, kr: Rgb::ZERO, kt: Rgb::ONE, interface, media: Media::CLEAR }
     }
 
     #[test]
@@ -170,7 +281,7 @@ mod tests {
     #[test]
     fn zero_coefficients_leave_no_parts() {
         let scattering = Material::Matte(Phong { ka: 1.0, ..Phong::NONE }).scattering(DVec3::ZERO);
-        assert!(!scattering.answers_lights() && scattering.specular.is_none());
+        assert!(!scattering.answers_lights() && scattering.specular().is_none());
         assert_eq!(scattering.ambient, Rgb::ONE);
         let scattering = Material::Reflective { phong: Phong::NONE, kr: Rgb::ZERO }.scattering(DVec3::ZERO);
         assert_eq!(scattering, Scattering::BLACK);

@@ -28,7 +28,7 @@ pub use float::{gamma, power_of_two_above};
 pub use frame::Frame;
 pub use glam::{DVec2, DVec3, Vec3};
 pub use ray::{Ray, unit};
-pub use sampler::{NodeKey, Purpose, SampleAddress};
+pub use sampler::{NodeKey, Purpose, SampleAddress, Sequence};
 pub use transform::{SingularTransform, Transform};
 pub use warp::concentric_disk;
 

@@ -21,6 +21,14 @@ pub enum Purpose {
     Film = 1,
     /// Position on the lens.
     Lens = 2,
+    /// Which part of a model a path follows; and whether it goes on.
+    Choice = 3,
+    /// Direction that a model scatters to.
+    Direction = 4,
+    /// Which light is asked; the second number is not used.
+    Light = 5,
+    /// Which point of it.
+    LightPoint = 6,
 }
 
 /// Where a ray stands in its tree: the root, or a child of another node.
@@ -31,24 +39,40 @@ impl NodeKey {
     /// The camera ray.
     pub const ROOT: Self = Self(1);
 
-    /// The child that crosses the surface.
+    /// The child that is transmitted in the one direction that Snell's law gives.
     #[inline]
     pub fn transmitted(self) -> Self {
-        Self(self.folded() << 1)
+        Self(self.folded() << 2)
     }
 
-    /// The child that stays on its side.
+    /// The child that is mirrored.
     #[inline]
     pub fn reflected(self) -> Self {
-        Self(self.folded() << 1 | 1)
+        Self(self.folded() << 2 | 1)
     }
 
-    /// Exact for the first 62 levels; deeper keys are folded by a hash, which leaves a chance of 2⁻⁶² that two nodes of
+    /// The child that goes anywhere.
+    #[inline]
+    pub fn scattered(self) -> Self {
+        Self(self.folded() << 2 | 2)
+    }
+
+    /// Exact for the first 30 levels; deeper keys are folded by a hash, which leaves a chance of 2⁻⁵⁹ that two nodes of
     /// one tree share their numbers.
     #[inline]
     fn folded(self) -> u64 {
-        if self.0 >> 62 == 0 { self.0 } else { mix(self.0) >> 2 | 1 << 61 }
+        if self.0 >> 60 == 0 { self.0 } else { mix(self.0) >> 4 | 1 << 59 }
     }
+}
+
+/// How the numbers of different samples of a pixel hang together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sequence {
+    /// They fill the unit square evenly.
+    #[default]
+    Sobol,
+    /// Not at all: for measuring what the sequence gains.
+    Independent,
 }
 
 /// One sample of one pixel: the part of the address that all nodes of a ray tree share.
@@ -56,19 +80,31 @@ impl NodeKey {
 pub struct SampleAddress {
     pixel: u64,
     index: u32,
+    sequence: Sequence,
 }
 
 impl SampleAddress {
     /// Sample `index` of the pixel in column `x` and row `y` of the whole image, whatever part of it is rendered.
     #[inline]
     pub fn new(seed: u64, x: u32, y: u32, index: u32) -> Self {
-        Self { pixel: mix(mix(seed) ^ (u64::from(y) << 32 | u64::from(x))), index }
+        let pixel = mix(mix(seed) ^ (u64::from(y) << 32 | u64::from(x)));
+        Self { pixel, index, sequence: Sequence::Sobol }
+    }
+
+    /// The same sample with numbers of another kind.
+    #[inline]
+    pub fn of_sequence(self, sequence: Sequence) -> Self {
+        Self { sequence, ..self }
     }
 
     /// Two numbers in [0, 1), stratified together over the sample index.
     #[inline]
     pub fn pair(&self, node: NodeKey, purpose: Purpose) -> [f64; 2] {
         let key = mix(self.pixel ^ mix(node.0.wrapping_add(u64::from(purpose as u32) << 56)));
+        if self.sequence == Sequence::Independent {
+            let first = mix(key ^ u64::from(self.index));
+            return [unit_interval(first as u32), unit_interval((first >> 32) as u32)];
+        }
         let second = mix(key);
         let index = owen_scramble(self.index, key as u32);
         [
@@ -213,6 +249,7 @@ mod tests {
         let (mut a, mut b) = (NodeKey::ROOT, NodeKey::ROOT.reflected());
         for _ in 0..500 {
             assert_ne!(a, b);
+            assert_ne!(a.scattered(), b.scattered());
             (a, b) = (a.reflected(), b.transmitted());
         }
     }

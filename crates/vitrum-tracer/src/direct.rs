@@ -4,8 +4,9 @@ use crate::light::{Arrival, Light};
 use crate::scene::Scene;
 use crate::settings::ShadowMode;
 use crate::stats::Stats;
+use vitrum_bxdf::TransportMode;
 use vitrum_geometry::{Side, SurfaceInteraction};
-use vitrum_materials::Scattering;
+use vitrum_materials::{Absorption, Scattering};
 use vitrum_math::{DVec3, Frame, Rgb};
 
 /// The tails of a sharp highlight reach down to 1e-300. Less than this, far below what a single-precision sample can hold
@@ -13,10 +14,11 @@ use vitrum_math::{DVec3, Frame, Rgb};
 const INVISIBLE: f64 = 1e-60;
 
 /// The radiance that all lights together send by way of `surface` to where the ray came from; `normal` is the one that it
-/// is shaded with.
+/// is shaded with, `medium` what absorbs on the way, if anything does.
 pub(crate) fn direct(
     scene: &Scene,
     shadow: ShadowMode,
+    medium: Option<Absorption>,
     surface: &SurfaceInteraction,
     normal: DVec3,
     scattering: &Scattering,
@@ -27,7 +29,14 @@ pub(crate) fn direct(
         // Light on the other side of the surface can't be reflected, whatever an interpolated normal says. Every light is on
         // the other side of the inner walls of glass, so this comes before anything else.
         if surface.side_of(light.offset(surface.point)) == Side::Incident {
-            radiance += from_one(scene, light, shadow, surface, normal, scattering, stats);
+            let reflected = from_one(scene, light, shadow, surface, normal, scattering, stats);
+            // Light that goes through everything comes unweakened, too.
+            radiance += match medium {
+                Some(medium) if light.casts_shadows() => {
+                    reflected * medium.transmittance(light.distance_from(surface.point))
+                }
+                _ => reflected,
+            };
         }
     }
     radiance
@@ -47,7 +56,7 @@ fn from_one(
     let Some(arrival) = light.arriving_at(surface.point) else { return Rgb::ZERO };
     let frame = Frame::around(normal);
     let (wo, wi) = (frame.to_local(surface.wo), frame.to_local(arrival.towards));
-    let reflected = scattering.eval(wo, wi) * arrival.irradiance;
+    let reflected = scattering.eval(wo, wi, TransportMode::Radiance) * arrival.irradiance;
     if reflected.max_element() <= INVISIBLE {
         return Rgb::ZERO;
     }

@@ -2,7 +2,7 @@
 //!
 //! Knows no files, clocks, environment variables or terminals. Read in this order: [`Scene`] (immutable, everything
 //! resolved), [`Plan`] (what the scene needs, and what it can skip), [`render`] (tiles, samples, film), `walker` (the ray
-//! tree: the hot loop).
+//! tree: the hot loop), `whitted` and `path` (what happens at a hit).
 //!
 //! Threads never change the image: every random number is a function of its address, every pixel is summed in a fixed
 //! order.
@@ -12,12 +12,15 @@ mod camera;
 mod direct;
 mod film;
 mod light;
+mod light_sampler;
+mod path;
 mod plan;
 mod render;
 mod scene;
 mod settings;
 mod stats;
 mod walker;
+mod whitted;
 
 pub use background::Background;
 pub use camera::{Camera, CameraError, Projection};
@@ -26,5 +29,5 @@ pub use light::{Falloff, Light};
 pub use plan::Plan;
 pub use render::{Progress, RenderError, Rendering, on_threads, render};
 pub use scene::{Scene, SceneError, SceneObject};
-pub use settings::{Crop, Settings, ShadowMode};
+pub use settings::{Branching, Crop, Integrator, LightSampling, Settings, ShadowMode};
 pub use stats::{Dropped, GivenUp, Stats};

@@ -1,4 +1,4 @@
-//! Lights that no ray can hit: points and directions.
+//! Lights that no ray can hit: points, spots and directions.
 
 use vitrum_math::{DVec3, Rgb};
 
@@ -22,6 +22,22 @@ pub enum Light {
         intensity: Rgb,
         /// How it fades.
         falloff: Falloff,
+        /// False for light that goes through everything.
+        shadows: bool,
+    },
+    /// Shines from a point into a cone, at full intensity within the inner one and down to nothing at the outer one, along a
+    /// smooth step of the angle's cosine.
+    Spot {
+        /// Where it is, metres.
+        position: DVec3,
+        /// Unit vector along its axis, away from it.
+        axis: DVec3,
+        /// Radiant intensity along the axis, W/sr per channel.
+        intensity: Rgb,
+        /// Cosine of the angle between the axis and the edge of the inner cone.
+        cos_inner: f64,
+        /// The same of the outer cone; less.
+        cos_outer: f64,
         /// False for light that goes through everything.
         shadows: bool,
     },
@@ -52,8 +68,16 @@ impl Light {
     #[inline]
     pub fn offset(&self, point: DVec3) -> DVec3 {
         match *self {
-            Self::Point { position, .. } => position - point,
+            Self::Point { position, .. } | Self::Spot { position, .. } => position - point,
             Self::Directional { towards, .. } => towards,
+        }
+    }
+
+    /// How far away it is, metres.
+    pub fn distance_from(&self, point: DVec3) -> f64 {
+        match self {
+            Self::Directional { .. } => f64::INFINITY,
+            _ => self.offset(point).length(),
         }
     }
 
@@ -74,6 +98,20 @@ impl Light {
                 };
                 Some(Arrival { towards: offset / distance, distance, irradiance })
             }
+            Self::Spot { position, axis, intensity, cos_inner, cos_outer, .. } => {
+                let offset = position - point;
+                let distance_squared = offset.dot(offset);
+                let distance = distance_squared.sqrt();
+                let towards = offset / distance;
+                let step = (-towards.dot(axis) - cos_outer) / (cos_inner - cos_outer);
+                // At the light itself nothing compares.
+                if step.is_nan() || step <= 0.0 {
+                    return None;
+                }
+                let step = step.min(1.0);
+                let irradiance = intensity * (step * step * (3.0 - 2.0 * step)) / distance_squared;
+                Some(Arrival { towards, distance, irradiance })
+            }
             Self::Directional { towards, irradiance, .. } => {
                 Some(Arrival { towards, distance: f64::INFINITY, irradiance })
             }
@@ -83,16 +121,18 @@ impl Light {
     /// True when objects block it.
     pub fn casts_shadows(&self) -> bool {
         match self {
-            Self::Point { shadows, .. } | Self::Directional { shadows, .. } => *shadows,
+            Self::Point { shadows, .. } | Self::Spot { shadows, .. } | Self::Directional { shadows, .. } => {
+                *shadows
+            }
         }
     }
 
     /// True when it sends out nothing.
     pub fn is_dark(&self) -> bool {
         match self {
-            Self::Point { intensity: colour, .. } | Self::Directional { irradiance: colour, .. } => {
-                *colour == Rgb::ZERO
-            }
+            Self::Point { intensity: colour, .. }
+            | Self::Spot { intensity: colour, .. }
+            | Self::Directional { irradiance: colour, .. } => *colour == Rgb::ZERO,
         }
     }
 }

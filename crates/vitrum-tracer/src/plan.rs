@@ -3,17 +3,21 @@
 //! Decided once, before the first ray. The ray tree asks it for lights and ambient light; the rest is decided where it is
 //! built (trees, isolated solids, lens, normals) and told here.
 
+use crate::light_sampler::LightSampler;
 use crate::scene::Scene;
-use crate::settings::{Settings, ShadowMode};
+use crate::settings::{Integrator, Settings, ShadowMode};
 use vitrum_geometry::Shape;
-use vitrum_materials::{Material, Texture};
+use vitrum_materials::{Absorption, Material, Texture};
 use vitrum_math::Rgb;
 
 /// What a scene needs; `false` and zero mean that nothing of the kind runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plan {
-    /// Lights that are asked at each point that can answer them. Without any: no light loop and no shadow rays.
+    /// Lights that are asked at each point that can answer them: all of them by ray trees, one of them by paths, which ask
+    /// objects that shine too. Without any: no light loop and no shadow rays.
     pub lights: usize,
+    /// Objects that shine, among them.
+    pub area_lights: usize,
     /// Lights that objects block.
     pub shadow_lights: usize,
     /// Ambient light.
@@ -22,6 +26,12 @@ pub struct Plan {
     pub dielectrics: bool,
     /// Mirrors.
     pub mirrors: bool,
+    /// Media that absorb: a factor for each segment of a ray.
+    pub absorption: bool,
+    /// Sheets of glass, which light that is asked for goes through.
+    pub thin_sheets: bool,
+    /// Glass and metal that scatters into a range of directions.
+    pub rough: bool,
     /// Textures that vary.
     pub textures: bool,
     /// Meshes with interpolated normals.
@@ -44,11 +54,21 @@ pub struct Plan {
 impl Plan {
     /// Looks at the scene.
     pub fn new(scene: &Scene, settings: &Settings) -> Self {
+        Self::with_lights(scene, settings, &LightSampler::of(scene, settings.integrator))
+    }
+
+    pub(crate) fn with_lights(scene: &Scene, settings: &Settings, sampler: &LightSampler) -> Self {
         let materials = scene.materials();
         let objects = scene.aggregate().objects();
-        let answers = materials.iter().filter_map(Material::phong).any(|p| p.kd > 0.0 || p.ks != Rgb::ZERO);
-        let lights = if answers { scene.lights.len() } else { 0 };
-        let shadow_lights = scene.lights.iter().take(lights).filter(|l| l.casts_shadows()).count();
+        let rough = materials.iter().any(Material::is_rough);
+        let answers =
+            rough || materials.iter().filter_map(Material::phong).any(|p| p.kd > 0.0 || p.ks != Rgb::ZERO);
+        let is_path = settings.integrator == Integrator::Path;
+        let all_lights = if is_path { sampler.len() } else { scene.lights.len() };
+        let lights = if answers { all_lights } else { 0 };
+        let area_lights = if answers { sampler.areas() } else { 0 };
+        let shadow_lights =
+            area_lights + scene.lights.iter().take(lights).filter(|l| l.casts_shadows()).count();
         let dielectrics = materials.iter().any(Material::is_dielectric);
         let varies = |t: &Texture| matches!(t, Texture::Checker(_));
         let textures = materials.iter().any(|m| match m {
@@ -59,22 +79,35 @@ impl Plan {
             Shape::Mesh(mesh) => Some(mesh),
             _ => None,
         });
-        let ambient =
-            scene.ambient != Rgb::ZERO && materials.iter().filter_map(Material::phong).any(|p| p.ka > 0.0);
+        let ambient = !is_path
+            && scene.ambient != Rgb::ZERO
+            && materials.iter().filter_map(Material::phong).any(|p| p.ka > 0.0);
+        let absorbs = |a: Absorption| !a.is_none();
+        let absorption = absorbs(scene.absorption)
+            || materials.iter().filter_map(Material::media).any(|m| absorbs(m.inside) || absorbs(m.outside));
         Self {
             lights,
+            area_lights,
+            absorption,
+            thin_sheets: is_path && materials.iter().any(|m| matches!(m, Material::Thin(_))),
+            rough,
             shadow_lights,
             ambient,
             dielectrics,
-            mirrors: materials.iter().any(|m| matches!(m, Material::Reflective { .. })),
+            mirrors: materials
+                .iter()
+                .any(|m| matches!(m, Material::Reflective { .. } | Material::Conductor(_))),
             textures,
             smooth_normals: meshes.clone().any(|m| m.is_smooth()),
             meshes: meshes.count(),
             object_tree: scene.aggregate().uses_tree(),
             lens: scene.camera.has_lens(),
-            straight_shadows: settings.shadow == ShadowMode::Straight && shadow_lights > 0 && dielectrics,
+            straight_shadows: !is_path
+                && settings.shadow == ShadowMode::Straight
+                && shadow_lights > 0
+                && dielectrics,
             invisible: scene.invisible().len(),
-            radiance_bound: (lights == 0 && !ambient).then(|| radiance_bound(scene)).flatten(),
+            radiance_bound: (lights == 0 && !ambient && !is_path).then(|| radiance_bound(scene)).flatten(),
         }
     }
 }
@@ -85,8 +118,8 @@ impl Plan {
 fn radiance_bound(scene: &Scene) -> Option<f64> {
     for (id, object) in (0u32..).zip(scene.aggregate().objects()) {
         for material in scene.materials_of(id) {
-            if let Material::Transparent(t) = material
-                && (t.interface.eta() < 1.0 || !object.is_convex_solid() || object.is_flipped())
+            if let Some(interface) = material.interface()
+                && (interface.eta() < 1.0 || !object.is_convex_solid() || object.is_flipped())
             {
                 return None;
             }

@@ -1,11 +1,14 @@
 //! Tiles, samples and threads.
 
 use crate::film::{Film, Pixel, PixelSum, rounds};
+use crate::light_sampler::LightSampler;
+use crate::path::Path;
 use crate::plan::Plan;
 use crate::scene::Scene;
-use crate::settings::{Crop, Settings};
+use crate::settings::{Crop, Integrator, Settings};
 use crate::stats::{Dropped, Stats};
-use crate::walker::Walker;
+use crate::walker::{Policy, Walker};
+use crate::whitted::Whitted;
 use rayon::prelude::*;
 use std::ops::Range;
 use vitrum_math::{NodeKey, Purpose, Rgb, SampleAddress};
@@ -82,13 +85,18 @@ pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Re
 
 /// Renders on the threads of the pool that it is called in, or on the calling one.
 fn render_here(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Rendering {
-    let plan = Plan::new(scene, settings);
+    let lights = LightSampler::of(scene, settings.integrator);
+    let plan = Plan::with_lights(scene, settings, &lights);
     let mut film = Film::new(settings.area());
     let mut stats = Stats::default();
     let tiles = tiles(settings);
     for samples in rounds(settings.spp) {
         let work = |tile: &Crop| {
-            let done = render_tile(scene, settings, &plan, *tile, samples.clone(), progress)?;
+            let what = (scene, &lights, settings, &plan);
+            let done = match settings.integrator {
+                Integrator::Whitted => render_tile::<Whitted>(what, *tile, samples.clone(), progress),
+                Integrator::Path => render_tile::<Path>(what, *tile, samples.clone(), progress),
+            }?;
             progress.advance(done.1.samples, done.1.rays());
             Some(done)
         };
@@ -142,15 +150,13 @@ fn tiles(settings: &Settings) -> Vec<Crop> {
 }
 
 /// The sums of a range of samples over a tile, row by row; `None` when the render is to stop before the tile is done.
-fn render_tile(
-    scene: &Scene,
-    settings: &Settings,
-    plan: &Plan,
+fn render_tile<P: Policy>(
+    (scene, lights, settings, plan): (&Scene, &LightSampler, &Settings, &Plan),
     tile: Crop,
     samples: Range<u32>,
     progress: &dyn Progress,
 ) -> Option<(Vec<Pixel>, Stats)> {
-    let mut walker = Walker::new(scene, settings, plan);
+    let mut walker = Walker::<P>::new(scene, lights, settings, plan);
     let mut pixels = Vec::with_capacity(tile.width as usize * tile.height as usize);
     let mut sum = PixelSum::default();
     for y in tile.y..tile.y + tile.height {
@@ -160,12 +166,12 @@ fn render_tile(
                 if progress.is_stopped() {
                     return None;
                 }
-                let address = SampleAddress::new(settings.seed, x, y, sample);
+                let address = SampleAddress::new(settings.seed, x, y, sample).of_sequence(settings.sequence);
                 let [dx, dy] = address.pair(NodeKey::ROOT, Purpose::Film);
                 let lens = || address.pair(NodeKey::ROOT, Purpose::Lens);
                 let ray = scene.camera.ray(f64::from(x) + dx, f64::from(y) + dy, settings.size, lens);
-                let radiance = walker.radiance(ray);
-                let rounded = round(radiance);
+                let radiance = walker.radiance(ray, &address);
+                let rounded = round(settings.clamp.map_or(radiance, |most| clamped(radiance, most)));
                 if rounded.is_none() {
                     walker.stats.dropped += 1;
                     walker.stats.first_dropped.get_or_insert(Dropped { y, x, sample });
@@ -183,6 +189,12 @@ fn render_tile(
         }
     }
     Some((pixels, walker.stats))
+}
+
+/// No channel above `most`. What is not finite stays so, and is left out.
+fn clamped(radiance: Rgb, most: f64) -> Rgb {
+    let channel = |c: f64| if c > most && c.is_finite() { most } else { c };
+    Rgb::from_array(radiance.to_array().map(channel))
 }
 
 /// A sample as the film takes it, rounded once; `None` when it is not finite or negative.

@@ -4,7 +4,7 @@ use crate::background::Background;
 use crate::camera::Camera;
 use crate::light::Light;
 use vitrum_geometry::{Aggregate, Object};
-use vitrum_materials::{IndexOfRefraction, Material};
+use vitrum_materials::{Absorption, IndexOfRefraction, Material};
 use vitrum_math::Rgb;
 
 /// An object with its name and material, as it enters a [`Scene`].
@@ -17,6 +17,15 @@ pub struct SceneObject {
     /// What it is made of: the materials that its faces number (see [`Object::material_of`]). A number beyond the last
     /// stands for the last.
     pub materials: Vec<Material>,
+}
+
+/// A medium that a ray goes through: a side of one of the scene's materials, or what surrounds everything. Four bytes, because
+/// nodes of ray trees are copied.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Medium(u32);
+
+impl Medium {
+    pub(crate) const AROUND: Self = Self(u32::MAX);
 }
 
 /// A scene that can't be built.
@@ -54,6 +63,8 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// What surrounds everything.
     pub medium: IndexOfRefraction,
+    /// What that absorbs.
+    pub absorption: Absorption,
 }
 
 impl Scene {
@@ -96,6 +107,7 @@ impl Scene {
             ambient: Rgb::ZERO,
             lights: Vec::new(),
             medium: IndexOfRefraction::AIR,
+            absorption: Absorption::NONE,
         })
     }
 
@@ -125,6 +137,32 @@ impl Scene {
         let materials = self.materials_of(object);
         let number = self.aggregate.objects()[object as usize].material_of(face) as usize;
         &materials[number.min(materials.len() - 1)]
+    }
+
+    /// The medium behind a face of an object, on the side that its normal points to or on the other one; `None` where the
+    /// material does not say.
+    pub(crate) fn medium_beside(&self, object: u32, face: u32, inside: bool) -> Option<Medium> {
+        let first = self.first_material[object as usize];
+        let count = self.materials_of(object).len();
+        let number = self.aggregate.objects()[object as usize].material_of(face) as usize;
+        let material = first + number.min(count - 1);
+        self.materials[material].media()?;
+        u32::try_from(2 * material + usize::from(inside)).ok().map(Medium)
+    }
+
+    /// What a medium absorbs.
+    pub(crate) fn absorption_of(&self, medium: Medium) -> &Absorption {
+        let Medium(place) = medium;
+        match self.materials.get(place as usize / 2).and_then(Material::media) {
+            Some(media) => {
+                if place % 2 == 1 {
+                    &media.inside
+                } else {
+                    &media.outside
+                }
+            }
+            None => &self.absorption,
+        }
     }
 
     /// The materials of an object, at least one.

@@ -1,5 +1,43 @@
 //! How a scene is rendered, apart from what is in it.
 
+use vitrum_math::Sequence;
+
+/// How light is followed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Integrator {
+    /// The whole ray tree of mirrors and glass, and light that comes straight from point lights: deterministic apart from the
+    /// places in the pixel.
+    #[default]
+    Whitted,
+    /// Light on all its ways, estimated without bias along random paths.
+    Path,
+}
+
+/// How many children of a hit on glass or a mirror a path follows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Branching {
+    /// One, by chance.
+    One,
+    /// All at the camera ray's hit, then one.
+    First,
+    /// All, while they weigh enough.
+    #[default]
+    Tree,
+}
+
+/// How paths find the light of objects that shine. No picture depends on it but in its noise; all but the first are for
+/// study.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LightSampling {
+    /// By asking for it and by meeting it, each as it does better.
+    #[default]
+    Mis,
+    /// By asking for it where that can be done.
+    Lights,
+    /// By meeting it. Light that can't be met (points, directions) is asked for.
+    Bsdf,
+}
+
 /// What glass does to shadow rays.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ShadowMode {
@@ -32,14 +70,25 @@ pub struct Settings {
     pub crop: Option<Crop>,
     /// Samples per pixel.
     pub spp: u32,
-    /// A ray deeper than this is not traced; the camera ray has depth 0.
-    pub max_depth: u32,
-    /// A child ray is not traced when the largest channel of its weight, corrected for the radiance factor of the media, is
-    /// below this. What is given up is summed and reported. Zero: never.
+    /// A ray deeper than this is not traced; the camera ray has depth 0. None: see [`deepest`](Self::deepest).
+    pub max_depth: Option<u32>,
+    /// How light is followed.
+    pub integrator: Integrator,
+    /// Of paths.
+    pub branching: Branching,
+    /// Of paths.
+    pub light_sampling: LightSampling,
+    /// Random numbers.
+    pub sequence: Sequence,
+    /// No channel of a sample counts for more than this: hides rare bright samples, and the light that they stand for. None,
+    /// the default, hides nothing.
+    pub clamp: Option<f64>,
+    /// Of ray trees: a child ray is not traced when the largest channel of its weight, corrected for the radiance factor of
+    /// the media, is below this. What is given up is summed and reported. Zero: never.
     pub cutoff: f64,
     /// Seed of all random numbers.
     pub seed: u64,
-    /// What glass does to shadow rays.
+    /// What glass does to shadow rays of ray trees.
     pub shadow: ShadowMode,
     /// Threads; zero for as many as the machine has. No effect on the image.
     pub threads: usize,
@@ -53,7 +102,12 @@ impl Default for Settings {
             size: [640, 480],
             crop: None,
             spp: 16,
-            max_depth: 10,
+            max_depth: None,
+            integrator: Integrator::Whitted,
+            branching: Branching::Tree,
+            light_sampling: LightSampling::Mis,
+            sequence: Sequence::Sobol,
+            clamp: None,
             cutoff: 1e-3,
             seed: 0,
             shadow: ShadowMode::Opaque,
@@ -63,7 +117,19 @@ impl Default for Settings {
     }
 }
 
+/// The deepest ray of a ray tree, unless something else is asked for.
+const WHITTED_DEPTH: u32 = 10;
+
 impl Settings {
+    /// A ray deeper than this is not traced: 10 in ray trees and no limit for paths, unless `max_depth` says something else.
+    #[inline]
+    pub fn deepest(&self) -> u32 {
+        self.max_depth.unwrap_or(match self.integrator {
+            Integrator::Whitted => WHITTED_DEPTH,
+            Integrator::Path => u32::MAX,
+        })
+    }
+
     /// The part of the image that is rendered.
     pub fn area(&self) -> Crop {
         self.crop.unwrap_or(Crop { x: 0, y: 0, width: self.size[0], height: self.size[1] })

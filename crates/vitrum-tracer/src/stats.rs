@@ -17,6 +17,8 @@ pub struct Stats {
     pub shadow_rays: u64,
     /// The largest depth of a ray that was traced.
     pub deepest: u32,
+    /// Nodes of paths that met a guard against endless paths and trees: roulette there, never a cut.
+    pub guarded: u64,
     /// Hits where an interpolated normal put a direction on the wrong side, so that the geometric normal was used.
     pub normal_fallbacks: u64,
     /// Rare events of the ray queries.
@@ -66,6 +68,7 @@ impl Stats {
         self.transmitted_rays += other.transmitted_rays;
         self.shadow_rays += other.shadow_rays;
         self.deepest = self.deepest.max(other.deepest);
+        self.guarded += other.guarded;
         self.normal_fallbacks += other.normal_fallbacks;
         self.geometry.neighbours_ignored += other.geometry.neighbours_ignored;
         self.dropped += other.dropped;

@@ -191,6 +191,11 @@ impl TriangleMesh {
         self.triangles.len()
     }
 
+    /// The corners of a triangle, in the units of the mesh, as rays meet them.
+    pub fn triangle(&self, face: u32) -> [DVec3; 3] {
+        self.corners(face).map(|corner| self.frame.outward(corner.as_dvec3()))
+    }
+
     /// The number of the material of a triangle; 0 when all have the same.
     #[inline]
     pub fn material(&self, face: u32) -> u32 {

@@ -28,6 +28,11 @@ impl Cuboid {
         if min.cmplt(max).all() { Ok(Self { min, max }) } else { Err(ShapeError::EmptyBox) }
     }
 
+    /// Opposite corners: the smallest and the largest coordinates, in metres.
+    pub const fn corners(&self) -> (DVec3, DVec3) {
+        (self.min, self.max)
+    }
+
     pub(crate) fn bounds(&self) -> Bounds {
         Bounds { min: self.min, max: self.max }
     }

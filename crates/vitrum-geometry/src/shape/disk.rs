@@ -30,6 +30,21 @@ impl Disk {
         })
     }
 
+    /// The middle, in metres.
+    pub const fn centre(&self) -> DVec3 {
+        self.centre
+    }
+
+    /// Towards its outside, unit length.
+    pub const fn normal(&self) -> DVec3 {
+        self.normal
+    }
+
+    /// The radius, in metres.
+    pub const fn radius(&self) -> f64 {
+        self.radius
+    }
+
     pub(crate) fn bounds(&self) -> Bounds {
         // The half extent along an axis is r √(1 − n²).
         let half = (DVec3::ONE - self.normal * self.normal).max(DVec3::ZERO);

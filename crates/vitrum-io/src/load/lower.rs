@@ -15,7 +15,8 @@ use vitrum_geometry::shape::{Cuboid, Cylinder, Disk, Plane, Rectangle, Shape, Sh
 use vitrum_materials::Material;
 use vitrum_math::{Rgb, Transform, unit};
 use vitrum_tracer::{
-    Background, Camera, Falloff, Light, Projection, Scene, SceneObject, Settings, ShadowMode,
+    Background, Branching, Camera, Falloff, Integrator, Light, Projection, Scene, SceneObject, Settings,
+    ShadowMode,
 };
 
 /// Everything that lowering an object needs and adds to.
@@ -76,11 +77,12 @@ pub(super) fn lower(
         Some(Ok(mut scene)) => {
             scene.background = background(&desc.background);
             scene.medium = matter.medium;
+            scene.absorption = matter.absorption;
             (scene.ambient, scene.lights) = lights(&desc.lights);
             problems.sort();
             Ok(Loaded {
                 scene,
-                settings: settings(&desc.render),
+                settings: settings(&desc.render, integrator(desc)),
                 display: display(&desc.output),
                 meshes: reports,
                 media: matter.media(),
@@ -345,6 +347,12 @@ impl<'a> Lowering<'a> {
         name: String,
         materials: Vec<Material>,
     ) {
+        if materials.iter().any(Material::is_rough) && integrator(self.desc) == Integrator::Whitted {
+            let message = format!("`{name}` is rough, and a ray tree can't follow light that it scatters");
+            let problem = error(self.source, object.span, message, "this object");
+            self.problems.push(problem.help("write integrator = \"path\" in [render], or roughness = 0"));
+            return;
+        }
         match Object::new(shape, transform, object.flip) {
             Ok(placed) => self.objects.push(SceneObject { name, object: placed, materials }),
             Err(reason) => {
@@ -399,6 +407,14 @@ fn lights(described: &[scene::Light]) -> (Rgb, Vec<Light>) {
                 },
                 shadows,
             },
+            scene::LightKind::Spot { position, direction, intensity, inner, outer, shadows } => Light::Spot {
+                position,
+                axis: unit(direction),
+                intensity,
+                cos_inner: libm::cos(inner.to_radians()),
+                cos_outer: libm::cos(outer.to_radians()),
+                shadows,
+            },
             scene::LightKind::Directional { direction, irradiance, shadows } => {
                 Light::Directional { towards: -unit(direction), irradiance, shadows }
             }
@@ -424,8 +440,25 @@ fn background(described: &scene::Background) -> Background {
     }
 }
 
-fn settings(render: &scene::Render) -> Settings {
+/// The one that is asked for; else the ray tree for what only that knows, and paths for the rest.
+fn integrator(desc: &SceneDesc) -> Integrator {
+    let ambient = desc.lights.iter().any(|light| matches!(light.kind, scene::LightKind::Ambient { .. }));
+    match desc.render.integrator {
+        Some(scene::Integrator::Whitted) => Integrator::Whitted,
+        Some(scene::Integrator::Path) => Integrator::Path,
+        None if ambient || desc.render.shadow == scene::Shadow::Straight => Integrator::Whitted,
+        None => Integrator::Path,
+    }
+}
+
+fn settings(render: &scene::Render, integrator: Integrator) -> Settings {
     Settings {
+        integrator,
+        branching: match render.branching {
+            scene::Branching::One => Branching::One,
+            scene::Branching::First => Branching::First,
+            scene::Branching::Tree => Branching::Tree,
+        },
         size: render.size,
         spp: render.spp,
         max_depth: render.max_depth,

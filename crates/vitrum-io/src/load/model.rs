@@ -66,7 +66,7 @@ pub(super) fn frame(path: &Path, file: &ObjFile, options: &ModelOptions) -> Resu
         lens: Lens::Pinhole { fov: FOV },
     });
     // Light through a solid, around a bend, and out again.
-    desc.render = Render { size: options.size, max_depth: 12, cutoff: 1e-2, ..Render::default() };
+    desc.render = Render { size: options.size, max_depth: Some(12), cutoff: 1e-2, ..Render::default() };
     desc.output = Output { tone: Tone::Neutral, ..desc.output };
     desc.background = Background::Gradient { bottom: Rgb::splat(0.25), top: Rgb::new(0.75, 0.85, 1.0) };
     desc.lights = vec![

@@ -35,6 +35,21 @@ pub enum LightKind {
         /// Whether objects stand in its way.
         shadows: bool,
     },
+    /// From one point into a cone.
+    Spot {
+        /// Metres.
+        position: DVec3,
+        /// The axis, away from the light, of any length.
+        direction: DVec3,
+        /// Along the axis, W/sr.
+        intensity: Rgb,
+        /// Degrees between the axis and where the light begins to weaken.
+        inner: f64,
+        /// Degrees between the axis and where none is left; more than `inner`.
+        outer: f64,
+        /// Whether objects stand in its way.
+        shadows: bool,
+    },
     /// Parallel.
     Directional {
         /// Where the light travels to, of any length.

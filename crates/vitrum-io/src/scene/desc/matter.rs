@@ -12,6 +12,36 @@ pub struct Medium {
     pub name: Name,
     /// Absolute index of refraction, 0.1 to 10.
     pub ior: f64,
+    /// What it absorbs.
+    pub absorption: Absorption,
+}
+
+/// What a medium absorbs.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Absorption {
+    /// Nothing.
+    #[default]
+    Clear,
+    /// So much per metre.
+    PerMetre(Rgb),
+    /// So much that a share is left after a distance.
+    Transmittance {
+        /// More than 0, at most 1.
+        share: Rgb,
+        /// Metres.
+        distance: f64,
+    },
+}
+
+/// What is inside of a dielectric.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Index {
+    /// A medium with this absolute index.
+    Absolute(f64),
+    /// A medium with this index over that of the medium outside.
+    Relative(f64),
+    /// One of the scene's media.
+    Medium(Name),
 }
 
 /// A colour that varies in space.
@@ -96,6 +126,39 @@ pub enum Model {
         ior: f64,
         /// What `ior` is relative to; none is the scene's medium.
         outside: Option<Name>,
+    },
+    /// Clear by Fresnel's equations.
+    Dielectric {
+        /// What is inside.
+        inside: Index,
+        /// What is outside; none is the scene's medium.
+        outside: Option<Name>,
+        /// Alpha, 0 to 1.
+        roughness: f64,
+        /// Whether the energy of repeated scattering is made up for.
+        compensation: bool,
+        /// What is absorbed inside, unless a medium of the scene says so.
+        absorption: Absorption,
+    },
+    /// A sheet of glass without thickness.
+    Thin {
+        /// Absolute index of the sheet, 0.001 to 1000.
+        ior: f64,
+        /// What is on both sides; none is the scene's medium.
+        outside: Option<Name>,
+        /// Share that crossing it at a right angle leaves, 0 to 1.
+        transmittance: Rgb,
+    },
+    /// Metal.
+    Conductor {
+        /// Real part of the index.
+        n: Rgb,
+        /// Imaginary part.
+        k: Rgb,
+        /// What is outside; none is the scene's medium.
+        outside: Option<Name>,
+        /// Alpha, 0 to 1.
+        roughness: f64,
     },
     /// Shining.
     Emissive {

@@ -11,14 +11,17 @@ pub struct Render {
     pub size: [u32; 2],
     /// Samples per pixel, 1 to 1 000 000.
     pub spp: u32,
-    /// A ray deeper than this is not traced, 0 to 1000; the camera ray has depth 0.
-    pub max_depth: u32,
-    /// Rays that weigh less are not traced, 0 to 1.
+    /// A ray deeper than this is not traced, 0 to 1000; the camera ray has depth 0. None is 10 in a ray tree, and no limit for
+    /// paths.
+    pub max_depth: Option<u32>,
+    /// Rays of ray trees that weigh less are not traced, 0 to 1.
     pub cutoff: f64,
     /// Start of the random numbers.
     pub seed: u64,
-    /// How light is followed.
-    pub integrator: Integrator,
+    /// How light is followed; none leaves it to what the scene has.
+    pub integrator: Option<Integrator>,
+    /// How many rays a path follows from glass.
+    pub branching: Branching,
     /// What glass does to shadow rays.
     pub shadow: Shadow,
 }
@@ -28,6 +31,19 @@ pub struct Render {
 pub enum Integrator {
     /// The whole ray tree, deterministic.
     Whitted,
+    /// Random paths, on all ways of light.
+    Path,
+}
+
+/// How many of the rays that glass divides a path follows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Branching {
+    /// One.
+    One,
+    /// All at the first hit, then one.
+    First,
+    /// All while they weigh enough.
+    Tree,
 }
 
 /// What glass does to shadow rays.

@@ -7,7 +7,8 @@ use vitrum_math::Rgb;
 
 use super::super::schema::{self, Realm, Table};
 use super::super::{
-    ColourOrTexture, Material, MaterialChoice, Medium, Model, Object, Pattern, Phong, Texture,
+    Absorption, ColourOrTexture, Index, Material, MaterialChoice, Medium, Model, Object, Pattern, Phong,
+    Texture,
 };
 use super::context::shorten;
 use super::{Context, Fields, Problem, Span};
@@ -19,8 +20,40 @@ pub(super) fn medium(cx: &mut Context<'_>, table: &DeTable<'_>, span: Span) -> O
     let mut fields = Fields::open(cx, &schema::MEDIUM, table, span);
     let name = fields.name(Realm::Medium);
     let ior = fields.number("ior");
+    let absorption = absorption(&mut fields);
     fields.close();
-    Some(Medium { name: name?, ior: ior? })
+    Some(Medium { name: name?, ior: ior?, absorption })
+}
+
+/// What is absorbed: by `transmittance` and `distance`, or by `sigma_a`, or nothing.
+fn absorption(fields: &mut Fields<'_, '_>) -> Absorption {
+    let (share, distance) = (fields.colour("transmittance"), fields.number("distance"));
+    let sigma_a = fields.colour("sigma_a");
+    let [has_share, has_distance, has_sigma] =
+        ["transmittance", "distance", "sigma_a"].map(|key| fields.has(key));
+    if has_share != has_distance {
+        let (there, missing) =
+            if has_share { ("transmittance", "distance") } else { ("distance", "transmittance") };
+        let message = format!("`{there}` says nothing without `{missing}`");
+        let problem =
+            Problem::error(fields.span_of(there), message, format!("expected `{missing}` beside it"));
+        fields.cx.report(
+            problem.help("`transmittance` is the share of light that is left after `distance` metres"),
+        );
+    }
+    if has_sigma && (has_share || has_distance) {
+        let problem = Problem::error(
+            fields.span_of("sigma_a"),
+            "absorption is given twice",
+            "expected either this or `transmittance` with `distance`",
+        );
+        fields.cx.report(problem.help("leave out one of them"));
+    }
+    match (share, distance, sigma_a) {
+        (Some(share), Some(distance), _) => Absorption::Transmittance { share, distance },
+        (_, _, Some(sigma_a)) => Absorption::PerMetre(sigma_a),
+        _ => Absorption::Clear,
+    }
 }
 
 pub(super) fn texture(cx: &mut Context<'_>, table: &DeTable<'_>, span: Span) -> Option<Texture> {
@@ -71,6 +104,13 @@ pub(super) fn material(
             phong.zip(kr).map(|(phong, kr)| Model::Reflective { phong, kr })
         }
         Some("transparent") => transparent(&mut fields),
+        Some("dielectric") => dielectric(&mut fields),
+        Some("thin") => {
+            let (ior, outside) = (fields.number("ior"), fields.reference("outside"));
+            let transmittance = fields.colour("transmittance");
+            ior.zip(transmittance).map(|(ior, transmittance)| Model::Thin { ior, outside, transmittance })
+        }
+        Some("conductor") => conductor(&mut fields),
         Some("emissive") => fields.colour_or_texture("radiance").map(|radiance| Model::Emissive { radiance }),
         Some(other) => panic!("no reader for a {other} material"),
         None => None,
@@ -103,6 +143,57 @@ fn transparent(fields: &mut Fields<'_, '_>) -> Option<Model> {
         warn_of_gain(fields, kr, kt);
     }
     Some(Model::Transparent { phong: phong?, kr: kr?, kt: kt?, ior: ior?, outside })
+}
+
+fn dielectric(fields: &mut Fields<'_, '_>) -> Option<Model> {
+    let absolute = fields.number("ior").map(Index::Absolute);
+    let relative = fields.number("relative_ior").map(Index::Relative);
+    let medium = fields.reference("inside").map(Index::Medium);
+    let outside = fields.reference("outside");
+    let roughness = fields.number("roughness");
+    let compensation = fields.boolean("compensation");
+    let absorption = absorption(fields);
+    let written: Vec<&str> =
+        ["ior", "relative_ior", "inside"].into_iter().filter(|key| fields.has(key)).collect();
+    let help =
+        "one of `ior` (against vacuum), `relative_ior` (against `outside`) and `inside` (a [[medium]])";
+    match written[..] {
+        [] => {
+            let message = "nothing says what is inside";
+            let problem = Problem::error(fields.span_of("ior"), message, "expected an index of refraction");
+            fields.cx.report(problem.help(help));
+        }
+        [first, second, ..] => {
+            let message = "the index of refraction is given twice";
+            let problem = Problem::error(fields.span_of(second), message, "this one, too");
+            let problem = problem.also(fields.span_of(first), "it is given here");
+            fields.cx.report(problem.help(help));
+        }
+        ["inside"] if absorption != Absorption::Clear => {
+            let message = "what is absorbed inside is given twice";
+            let key = if fields.has("sigma_a") { "sigma_a" } else { "transmittance" };
+            let problem = Problem::error(fields.span_of(key), message, "the medium inside has its own");
+            fields
+                .cx
+                .report(problem.help("write it at the [[medium]], or write `ior` in the place of `inside`"));
+        }
+        _ => {}
+    }
+    let inside = absolute.or(relative).or(medium);
+    Some(Model::Dielectric {
+        inside: inside?,
+        outside,
+        roughness: roughness?,
+        compensation: compensation?,
+        absorption,
+    })
+}
+
+fn conductor(fields: &mut Fields<'_, '_>) -> Option<Model> {
+    let (n, k) = (fields.colour("n"), fields.colour("k"));
+    let outside = fields.reference("outside");
+    let roughness = fields.number("roughness");
+    Some(Model::Conductor { n: n?, k: k?, outside, roughness: roughness? })
 }
 
 /// Warns of a surface that gives back more light than it gets.
@@ -148,7 +239,10 @@ pub(super) fn check_reflectances(
             Model::Phong(phong) | Model::Reflective { phong, .. } | Model::Transparent { phong, .. } => {
                 &phong.color
             }
-            Model::Emissive { .. } => continue,
+            Model::Dielectric { .. }
+            | Model::Thin { .. }
+            | Model::Conductor { .. }
+            | Model::Emissive { .. } => continue,
         };
         let ColourOrTexture::Texture(name) = color else { continue };
         if let Some(texture) = bright.get(name.text.as_str()) {

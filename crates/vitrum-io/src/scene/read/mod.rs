@@ -64,6 +64,9 @@ fn scene(cx: &mut Context<'_>, table: &DeTable<'_>) -> Option<SceneDesc> {
     let objects = top.tables("object", object::object);
     top.close();
 
+    if let Some(render) = &render {
+        light::check_ambient(cx, render, &lights);
+    }
     matter::check_reflectances(cx, &textures, &materials, &objects);
     object::check_instances(cx, &objects);
     Some(SceneDesc {

@@ -4,7 +4,9 @@ use toml::de::DeTable;
 use vitrum_math::DVec3;
 
 use super::super::schema::{self, SMALLEST};
-use super::super::{Background, Camera, Integrator, Lens, MAX_PIXELS, Name, Output, Render, Shadow, Tone};
+use super::super::{
+    Background, Branching, Camera, Integrator, Lens, MAX_PIXELS, Name, Output, Render, Shadow, Tone,
+};
 use super::{Context, Fields, Problem, Source, Span, value};
 
 /// Sine of the angle between `up` and the line of sight below which the picture's orientation is noise.
@@ -17,8 +19,20 @@ pub(super) fn render(cx: &mut Context<'_>, table: &DeTable<'_>, span: Span) -> O
     let max_depth = fields.small_integer("max_depth");
     let cutoff = fields.number("cutoff");
     let seed = fields.integer("seed");
-    let integrator = fields.choice("integrator", &[("whitted", Integrator::Whitted)]);
+    let integrator =
+        fields.choice("integrator", &[("whitted", Integrator::Whitted), ("path", Integrator::Path)]);
+    let branching = fields.choice(
+        "branching",
+        &[("one", Branching::One), ("first", Branching::First), ("tree", Branching::Tree)],
+    );
     let shadow = fields.choice("shadow", &[("opaque", Shadow::Opaque), ("straight", Shadow::Straight)]);
+    if integrator == Some(Integrator::Path) && shadow == Some(Shadow::Straight) {
+        let message = "paths know no straight shadows";
+        let label = "light through glass is found where it goes";
+        let problem = Problem::error(fields.span_of("shadow"), message, label);
+        let problem = problem.also(fields.span_of("integrator"), "paths are asked for here");
+        fields.cx.report(problem.help("leave out `shadow`, or write integrator = \"whitted\""));
+    }
     if let Some([width, height]) = size {
         let pixels = u64::from(width) * u64::from(height);
         if pixels > MAX_PIXELS {
@@ -31,10 +45,11 @@ pub(super) fn render(cx: &mut Context<'_>, table: &DeTable<'_>, span: Span) -> O
     Some(Render {
         size: size?,
         spp: spp?,
-        max_depth: max_depth?,
+        max_depth,
         cutoff: cutoff?,
         seed: seed?,
-        integrator: integrator?,
+        integrator,
+        branching: branching?,
         shadow: shadow?,
     })
 }

@@ -48,7 +48,9 @@ fn blank_unclosed(cx: &mut Context<'_>, text: &mut String) {
             statement_at(&statements, span_of(error)).map(|statement| (statement.whole, statement.value))
         });
         let Some((whole, value)) = unclosed else { return };
-        let bracket = Span { start: value.start, end: value.start + 1 };
+        // At the end of the text there is none: the parser may have come that far for the value.
+        let length = text[value.start..].chars().next().map_or(0, char::len_utf8);
+        let bracket = Span { start: value.start, end: value.start + length };
         let problem = Problem::error(bracket, "this bracket is never closed", "opened here");
         cx.report_anyway(problem.help("close it where its list ends"));
         let end = next_statement(text, whole.start).unwrap_or(text.len());

@@ -1,6 +1,6 @@
 //! Lights.
 
-use super::{Choice, Key, Kind, Table, Variant};
+use super::{Choice, Key, Kind, Range, Table, Variant};
 
 const SHADOWS: Key = Key::new("shadows", Kind::Boolean, "whether objects stand in its way").default("true");
 
@@ -34,6 +34,31 @@ pub const LIGHT: Table = Table {
                         "whether it weakens with the distance, as light does, or not",
                     )
                     .default("\"inverse-square\""),
+                    SHADOWS,
+                ],
+            },
+            Variant {
+                name: "spot",
+                meaning: "Light from one point into a cone.",
+                keys: &[
+                    Key::point("position", "where it is"),
+                    Key::vector("direction", "the axis of the cone, away from the light"),
+                    Key::light("intensity", "its radiant intensity along the axis").unit("W/sr"),
+                    Key::new(
+                        "outer",
+                        Kind::Number,
+                        "angle between the axis and the edge, where no light is left",
+                    )
+                    .unit("degrees")
+                    .range(Range::Open(0.0, 180.0)),
+                    Key::new(
+                        "inner",
+                        Kind::Number,
+                        "angle up to which the light is as strong as along the axis",
+                    )
+                    .unit("degrees")
+                    .range(Range::Closed(0.0, 180.0))
+                    .or("four fifths of `outer`"),
                     SHADOWS,
                 ],
             },

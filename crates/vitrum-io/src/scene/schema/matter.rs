@@ -15,10 +15,42 @@ pub const MEDIUM: Table = Table {
         ),
         Key::new("ior", Kind::Number, "its index of refraction against vacuum")
             .range(Range::Closed(0.1, 10.0)),
+        TRANSMITTANCE,
+        DISTANCE,
+        SIGMA_A,
     ],
     choice: None,
-    hints: &[],
+    hints: ABSORPTION_HINTS,
 };
+
+const TRANSMITTANCE: Key =
+    Key::new("transmittance", Kind::Colour, "share of light left after `distance` in the medium")
+        .range(Range::Closed(1e-30, 1.0))
+        .or("clear");
+
+const DISTANCE: Key = Key::length("distance", "the distance that `transmittance` belongs to").or("none");
+
+const SIGMA_A: Key = Key::new(
+    "sigma_a",
+    Kind::Colour,
+    "absorption, in the place of `transmittance`: exp(-sigma_a d) is left after d",
+)
+.unit("1/m")
+.range(Range::Closed(0.0, 1e12))
+.or("clear");
+
+const ABSORPTION_HINTS: &[(&str, &str)] = &[
+    ("absorption", "absorption is given by `transmittance` and `distance`, or by `sigma_a` per metre"),
+    ("attenuation", "absorption is given by `transmittance` and `distance`, or by `sigma_a` per metre"),
+];
+
+const ROUGHNESS: Key = Key::new(
+    "roughness",
+    Kind::Number,
+    "alpha of the GGX distribution of microscopic normals; below 0.0001 it is smooth; what is rough needs `path`",
+)
+.range(Range::Closed(0.0, 1.0))
+.default("0.0");
 
 /// `[[texture]]`
 pub const TEXTURE: Table = Table {
@@ -116,8 +148,61 @@ const MODELS: Choice = Choice {
             ],
         },
         Variant {
+            name: "dielectric",
+            meaning: "Glass, water, diamond: reflects and refracts by Fresnel's equations. One of `ior`, `relative_ior` and `inside` says what is inside.",
+            keys: &[
+                Key::new("ior", Kind::Number, "index of refraction inside, against vacuum")
+                    .range(Range::Closed(0.001, 1000.0))
+                    .or("none"),
+                Key::new("relative_ior", Kind::Number, "index inside over that of `outside`")
+                    .range(Range::Closed(0.001, 1000.0))
+                    .or("none"),
+                Key::new("inside", Kind::Reference(Realm::Medium), "the medium inside, with what it absorbs")
+                    .or("none"),
+                Key::new("outside", Kind::Reference(Realm::Medium), "the medium outside")
+                    .or("`medium` of `[surroundings]`"),
+                ROUGHNESS,
+                Key::new(
+                    "compensation",
+                    Kind::Boolean,
+                    "of rough glass: whether light that is scattered more than once in the roughness is made up for",
+                )
+                .default("true"),
+                TRANSMITTANCE,
+                DISTANCE,
+                SIGMA_A,
+            ],
+        },
+        Variant {
+            name: "thin",
+            meaning: "A sheet of glass as one surface without thickness: reflects, and lets the rest go straight on.",
+            keys: &[
+                Key::new("ior", Kind::Number, "index of refraction of the sheet, against vacuum")
+                    .range(Range::Closed(0.001, 1000.0)),
+                Key::new("outside", Kind::Reference(Realm::Medium), "the medium on both sides")
+                    .or("`medium` of `[surroundings]`"),
+                coefficient(
+                    "transmittance",
+                    "share that the glass leaves of light that crosses it at a right angle",
+                )
+                .default("1"),
+            ],
+        },
+        Variant {
+            name: "conductor",
+            meaning: "Metal: reflects by Fresnel's equations for a complex index, and absorbs the rest.",
+            keys: &[
+                Key::new("n", Kind::Colour, "real part of the index, against vacuum")
+                    .range(Range::Closed(0.001, 100.0)),
+                Key::new("k", Kind::Colour, "imaginary part of the index").range(Range::Closed(0.0, 100.0)),
+                Key::new("outside", Kind::Reference(Realm::Medium), "the medium outside")
+                    .or("`medium` of `[surroundings]`"),
+                ROUGHNESS,
+            ],
+        },
+        Variant {
             name: "emissive",
-            meaning: "Shines by itself; does not light other objects.",
+            meaning: "Shines by itself, on its outer side. It lights other objects where light is followed by `path`, and only there.",
             keys: &[Key::new("radiance", Kind::ColourOrTexture, "its radiance")
                 .unit("W/(m² sr)")
                 .range(Range::AtLeast(0.0))],

@@ -46,21 +46,32 @@ pub const RENDER: Table = Table {
         Key::new("spp", Kind::Integer, "samples per pixel").range(Range::Whole(1, 1_000_000)).default("16"),
         Key::new("max_depth", Kind::Integer, "a ray deeper than this is not traced; the camera ray has depth 0")
             .range(Range::Whole(0, 1000))
-            .default("10"),
+            .or("10 for `whitted`; none for `path`"),
         Key::share(
             "cutoff",
-            "a ray that weighs less is not traced; what is given up so is summed and reported, and 0 gives up nothing",
+            "of `whitted`: a ray that weighs less is not traced; what is given up so is summed and reported, and 0 gives up nothing",
         )
         .default("0.001"),
         Key::new("seed", Kind::Integer, "start of the random numbers; equal seeds give equal pictures")
             .range(Range::Whole(0, u64::MAX))
             .default("0"),
-        Key::new("integrator", Kind::Choice(&["whitted"]), "how light is followed: `whitted` traces the ray tree")
-            .default("\"whitted\""),
+        Key::new(
+            "integrator",
+            Kind::Choice(&["whitted", "path"]),
+            "how light is followed: `whitted` traces the ray tree of mirrors and glass, `path` follows light on all its ways",
+        )
+        .or("`whitted` with an ambient light or straight shadows, else `path`"),
+        Key::new(
+            "branching",
+            Kind::Choice(&["one", "first", "tree"]),
+            "of `path`: whether one of the rays that glass divides is followed, all at the first hit and then one, or all while \
+             they weigh enough; no picture depends on it but in its noise",
+        )
+        .default("\"tree\""),
         Key::new(
             "shadow",
             Kind::Choice(&["opaque", "straight"]),
-            "whether glass casts a full shadow, or lets light through along a straight line, unbent",
+            "of `whitted`: whether glass casts a full shadow, or lets light through along a straight line, unbent",
         )
         .default("\"opaque\""),
     ],

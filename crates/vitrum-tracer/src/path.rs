@@ -1,0 +1,365 @@
+//! What a path does at a hit: it asks one light, and goes on along one direction, or several.
+//!
+//! Light is found in two ways: by asking for it (surfaces that scatter into a range of directions), and by meeting it. What
+//! both can find is weighted by the balance heuristic (E. Veach and L. Guibas, Optimally Combining Sampling Techniques for
+//! Monte Carlo Rendering, 1995); what only one can find counts in full: behind smooth glass and mirrors light is only met.
+//! Thin sheets of glass change no direction, so both ways lead through them.
+//!
+//! Every estimate is unbiased: paths end by roulette, in proportion to their weight without the radiance factor, and not at
+//! a depth, unless one is set.
+
+use crate::light_sampler::{Source, emitted};
+use crate::settings::{Branching, LightSampling};
+use crate::walker::{Node, Policy, Walker, shading_normal, side};
+use vitrum_bxdf::{Bxdf, Density, Sample, TransportMode};
+use vitrum_geometry::{Side, SurfaceInteraction};
+use vitrum_materials::Scattering;
+use vitrum_math::{DVec3, Frame, NodeKey, Purpose, Rgb, SampleAddress};
+
+/// Weight below which a path may end: one of less weight goes on with the probability weight/threshold, and then has this
+/// weight. Measured with each branching: less gains nothing, more costs up to a third of the efficiency.
+const THRESHOLD: f64 = 0.05;
+
+/// Beyond this depth, with so many nodes waiting, and beyond so many nodes of one sample, a node is followed only this often:
+/// light that is caught in glass by total reflection would never end. It is less than a third, and a hit has three children at
+/// most, so that every tree ends.
+const GUARD_DEPTH: u32 = 256;
+const GUARD_WAITING: usize = 64;
+const GUARD_NODES: u32 = 4096;
+const GUARDED_SURVIVAL: f64 = 0.25;
+
+/// What light is asked for ends this share of its distance short of it, so that its own surface is not in the way.
+const SHORT: f64 = 1e-9;
+
+/// Random paths.
+pub(crate) struct Path;
+
+/// What a node of a path remembers.
+#[derive(Clone, Copy)]
+pub(crate) struct Trace {
+    /// Its place in the tree, which its random numbers depend on.
+    key: NodeKey,
+    /// How its direction was chosen, where light in that direction could have been asked for.
+    chance: Option<Chance>,
+}
+
+/// A direction that was one of many.
+#[derive(Clone, Copy)]
+struct Chance {
+    /// Its density per steradian.
+    pdf: f64,
+    /// The point that it was chosen at.
+    from: DVec3,
+}
+
+impl Policy for Path {
+    type Memory = Trace;
+
+    const ROOT: Trace = Trace { key: NodeKey::ROOT, chance: None };
+
+    #[inline]
+    fn hit(
+        walker: &mut Walker<'_, Self>,
+        node: &Node<Trace>,
+        surface: &SurfaceInteraction,
+        scattering: &Scattering,
+        address: &SampleAddress,
+    ) -> Rgb {
+        let of_back;
+        let scattering = if surface.front {
+            scattering
+        } else {
+            of_back = scattering.of_back();
+            &of_back
+        };
+        let light = walker.light(node, surface, scattering, address);
+        walker.children(node, surface, scattering, address);
+        light
+    }
+}
+
+type PathNode = Node<Trace>;
+
+impl Walker<'_, Path> {
+    /// The radiance that a hit sends towards where the ray came from, apart from what comes along its children.
+    #[inline]
+    fn light(
+        &mut self,
+        node: &PathNode,
+        surface: &SurfaceInteraction,
+        scattering: &Scattering,
+        address: &SampleAddress,
+    ) -> Rgb {
+        let mut light = Rgb::ZERO;
+        if surface.front && scattering.emitted != Rgb::ZERO {
+            light += scattering.emitted * self.met_by_chance(node, surface);
+        }
+        if self.plan.lights > 0 && scattering.answers_lights() {
+            light += self.ask_a_light(node, surface, scattering, address);
+        }
+        light
+    }
+
+    /// The weight of light that a path meets and could have asked for.
+    #[inline]
+    fn met_by_chance(&self, node: &PathNode, surface: &SurfaceInteraction) -> f64 {
+        let Some(Chance { pdf, from }) = node.memory.chance else { return 1.0 };
+        let asked = self.lights.pdf(self.scene, from, surface);
+        match (asked, self.settings.light_sampling) {
+            (None, _) | (_, LightSampling::Bsdf) => 1.0,
+            (Some(_), LightSampling::Lights) => 0.0,
+            (Some(asked), LightSampling::Mis) => pdf / (pdf + asked),
+        }
+    }
+
+    /// What one light sends by way of the surface, over the density of asking for it.
+    #[inline(never)]
+    fn ask_a_light(
+        &mut self,
+        node: &PathNode,
+        surface: &SurfaceInteraction,
+        scattering: &Scattering,
+        address: &SampleAddress,
+    ) -> Rgb {
+        let [pick, _] = address.pair(node.memory.key, Purpose::Light);
+        let Some((source, probability)) = self.lights.choose(self.scene, surface.point, pick) else {
+            return Rgb::ZERO;
+        };
+        let left = self.settings.deepest().saturating_sub(node.depth);
+        let (towards, distance, arriving, asked) = match source {
+            Source::Delta(light) => {
+                let light = &self.scene.lights[*light];
+                let Some(arrival) = light.arriving_at(surface.point) else { return Rgb::ZERO };
+                let distance = if light.casts_shadows() { arrival.distance } else { 0.0 };
+                (arrival.towards, distance, arrival.irradiance / probability, None)
+            }
+            Source::Area { .. } if self.settings.light_sampling == LightSampling::Bsdf => return Rgb::ZERO,
+            // What no ray could meet any more is not asked for either: the weights of both ways belong together.
+            Source::Area { .. } if left == 0 => return Rgb::ZERO,
+            Source::Area { object, sampler } => {
+                let point = address.pair(node.memory.key, Purpose::LightPoint);
+                let Some(sample) = sampler.sample(surface.point, point) else { return Rgb::ZERO };
+                if sample.towards.dot(sample.ng) >= 0.0 {
+                    return Rgb::ZERO;
+                }
+                let radiance = emitted(self.scene.material(*object, sample.face), sample.point);
+                (sample.towards, sample.distance * (1.0 - SHORT), radiance, Some(sample.pdf * probability))
+            }
+        };
+        let frame = Frame::around(shading_normal(surface));
+        let (wo, wi) = (frame.to_local(surface.wo), frame.to_local(towards));
+        let side = surface.side_of(towards);
+        // An interpolated normal must not let light through the surface.
+        if ((wi.z >= 0.0) == (wo.z >= 0.0)) != (side == Side::Incident) {
+            return Rgb::ZERO;
+        }
+        let scattered = scattering.eval(wo, wi, TransportMode::Radiance) * arriving;
+        let scattered = match asked {
+            None => scattered,
+            Some(asked) if self.settings.light_sampling == LightSampling::Lights => scattered / asked,
+            Some(asked) => scattered / (asked + scattering.pdf(wo, wi)),
+        };
+        if scattered.max_element() <= 0.0 {
+            return Rgb::ZERO;
+        }
+        let sheets = if asked.is_some() { left - 1 } else { u32::MAX };
+        scattered * self.unblocked(node, surface, side, towards, distance, sheets)
+    }
+
+    /// The share of the light that comes through from a distance: nothing through objects, but for so many thin sheets; less
+    /// through a medium that absorbs.
+    fn unblocked(
+        &mut self,
+        node: &PathNode,
+        surface: &SurfaceInteraction,
+        side: Side,
+        towards: DVec3,
+        distance: f64,
+        mut sheets: u32,
+    ) -> Rgb {
+        if distance == 0.0 {
+            return Rgb::ONE;
+        }
+        self.stats.shadow_rays += 1;
+        let mut query = surface.leave(towards, side);
+        let mut share = if self.plan.absorption {
+            self.scene.absorption_of(self.medium(node, surface, side)).transmittance(distance)
+        } else {
+            Rgb::ONE
+        };
+        if !self.plan.thin_sheets {
+            let blocked = self.scene.aggregate().occluded(&query, distance, &mut self.stats.geometry);
+            return if blocked { Rgb::ZERO } else { share };
+        }
+        while let Some(hit) = self.scene.aggregate().closest(&query, &mut self.stats.geometry)
+            && hit.t < distance
+        {
+            let sheet = self.scene.aggregate().interaction(&query, &hit);
+            let scattering = self.scene.material(hit.object, hit.face).scattering(sheet.point);
+            let is_thin = matches!(scattering.specular(), Some(Bxdf::ThinDielectric(_)));
+            let through = if is_thin { self.split(&sheet, &scattering).0.transmitted } else { None };
+            let (Some(through), true) = (through, sheets > 0) else { return Rgb::ZERO };
+            share *= through.weight;
+            sheets -= 1;
+            query.pass(hit.t, hit.object, hit.face);
+        }
+        share
+    }
+
+    /// Puts the directions in which a path goes on onto the stack.
+    #[inline]
+    fn children(
+        &mut self,
+        node: &PathNode,
+        surface: &SurfaceInteraction,
+        scattering: &Scattering,
+        address: &SampleAddress,
+    ) {
+        let scatters = scattering.answers_lights();
+        if scattering.specular().is_none() {
+            if scatters {
+                let [u, _] = address.pair(node.memory.key, Purpose::Choice);
+                self.go_anywhere(node, surface, scattering, address, u, 1.0);
+            }
+            return;
+        }
+        let (split, frame) = self.split(surface, scattering);
+        let all = match self.settings.branching {
+            Branching::One => false,
+            Branching::First => node.depth == 0,
+            Branching::Tree => true,
+        };
+        let share = |child: &Option<Sample<f64>>| {
+            child.map_or(0.0, |sample| sample.weight.max_element() * (sample.eta * sample.eta))
+        };
+        let (reflected, transmitted) = (share(&split.reflected), share(&split.transmitted));
+        let anywhere = if scatters { scattering.albedo() } else { 0.0 };
+        let total = reflected + transmitted + anywhere;
+        let [u, _] = address.pair(node.memory.key, Purpose::Choice);
+        let at = u * total;
+        // All of them, or one in proportion to its share.
+        if let Some(child) = &split.reflected
+            && (all || at < reflected)
+        {
+            let probability = if all { 1.0 } else { reflected / total };
+            self.go_on(node, surface, &frame, child, probability, scattering, address);
+        }
+        if let Some(child) = &split.transmitted
+            && (all || reflected <= at && at < reflected + transmitted)
+        {
+            let probability = if all { 1.0 } else { transmitted / total };
+            self.go_on(node, surface, &frame, child, probability, scattering, address);
+        }
+        if scatters && (all || reflected + transmitted <= at) {
+            let u = if all {
+                u
+            } else {
+                ((at - reflected - transmitted) / anywhere).clamp(0.0, 1.0 - f64::EPSILON)
+            };
+            let probability = if all { 1.0 } else { anywhere / total };
+            self.go_anywhere(node, surface, scattering, address, u, probability);
+        }
+    }
+
+    /// On along a specular child.
+    #[inline]
+    #[expect(clippy::too_many_arguments, reason = "a hit, and what was chosen there")]
+    fn go_on(
+        &mut self,
+        node: &PathNode,
+        surface: &SurfaceInteraction,
+        frame: &Frame,
+        child: &Sample<f64>,
+        probability: f64,
+        scattering: &Scattering,
+        address: &SampleAddress,
+    ) {
+        let side = side(child);
+        let key = match side {
+            Side::Incident => node.memory.key.reflected(),
+            Side::Transmitted => node.memory.key.transmitted(),
+        };
+        // Straight through a sheet, light could still have been asked for.
+        let straight =
+            side == Side::Transmitted && matches!(scattering.specular(), Some(Bxdf::ThinDielectric(_)));
+        let chance = if straight { node.memory.chance } else { None };
+        let direction = frame.to_world(child.wi);
+        let direction = direction * (1.5 - 0.5 * direction.dot(direction));
+        let next = Node {
+            query: surface.leave(direction, side),
+            throughput: node.throughput * child.weight / probability,
+            eta_squared: node.eta_squared * (child.eta * child.eta),
+            depth: node.depth + 1,
+            medium: self.medium(node, surface, side),
+            memory: Trace { key, chance },
+        };
+        self.push_by_roulette(next, side, address);
+    }
+
+    /// On along a direction of the parts that have a density.
+    #[inline]
+    fn go_anywhere(
+        &mut self,
+        node: &PathNode,
+        surface: &SurfaceInteraction,
+        scattering: &Scattering,
+        address: &SampleAddress,
+        uc: f64,
+        probability: f64,
+    ) {
+        let frame = Frame::around(shading_normal(surface));
+        let u = address.pair(node.memory.key, Purpose::Direction);
+        let Some(child) = scattering.sample(frame.to_local(surface.wo), uc, u, TransportMode::Radiance)
+        else {
+            return;
+        };
+        let direction = frame.to_world(child.wi);
+        let direction = direction * (1.5 - 0.5 * direction.dot(direction));
+        let side = side(&child);
+        if surface.side_of(direction) != side {
+            return;
+        }
+        let Density::SolidAngle(pdf) = child.pdf else { unreachable!("it has a density") };
+        let next = Node {
+            query: surface.leave(direction, side),
+            throughput: node.throughput * child.weight / probability,
+            eta_squared: node.eta_squared * (child.eta * child.eta),
+            depth: node.depth + 1,
+            medium: self.medium(node, surface, side),
+            memory: Trace {
+                key: node.memory.key.scattered(),
+                chance: Some(Chance { pdf, from: surface.point }),
+            },
+        };
+        self.push_by_roulette(next, side, address);
+    }
+
+    /// Puts a node onto the stack, unless roulette or the depth limit ends it.
+    #[inline]
+    fn push_by_roulette(&mut self, mut next: PathNode, side: Side, address: &SampleAddress) {
+        let weight = next.throughput.max_element() * next.eta_squared;
+        if next.depth > self.settings.deepest() {
+            self.given_up += weight;
+            return;
+        }
+        let mut survival = if weight < THRESHOLD { weight / THRESHOLD } else { 1.0 };
+        self.nodes += 1;
+        if next.depth >= GUARD_DEPTH || self.stack.len() >= GUARD_WAITING || self.nodes >= GUARD_NODES {
+            self.stats.guarded += 1;
+            survival *= GUARDED_SURVIVAL;
+        }
+        if survival < 1.0 {
+            let [_, u] = address.pair(next.memory.key, Purpose::Choice);
+            // Not less than: what weighs nothing ends.
+            if u >= survival {
+                return;
+            }
+            next.throughput /= survival;
+        }
+        match side {
+            Side::Incident => self.stats.reflected_rays += 1,
+            Side::Transmitted => self.stats.transmitted_rays += 1,
+        }
+        self.stack.push(next);
+    }
+}

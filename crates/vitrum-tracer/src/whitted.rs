@@ -1,0 +1,97 @@
+//! The ray tree as T. Whitted described it (An Improved Illumination Model for Shaded Display, 1980): every light is asked, and
+//! both children of a dielectric are followed, each with the material's own coefficient. The tree ends where a coefficient is
+//! zero, at the depth limit, and where weights fall below the cut-off. What ends early is counted.
+
+use crate::direct::direct;
+use crate::walker::{Node, Policy, Walker, shading_normal, side};
+use vitrum_bxdf::Sample;
+use vitrum_geometry::{Side, SurfaceInteraction};
+use vitrum_materials::Scattering;
+use vitrum_math::{Frame, Rgb, SampleAddress};
+
+/// The whole ray tree.
+pub(crate) struct Whitted;
+
+impl Policy for Whitted {
+    type Memory = ();
+
+    const ROOT: () = ();
+
+    #[inline]
+    fn hit(
+        walker: &mut Walker<'_, Self>,
+        node: &Node<()>,
+        surface: &SurfaceInteraction,
+        scattering: &Scattering,
+        _: &SampleAddress,
+    ) -> Rgb {
+        let local = walker.local_light(node, surface, scattering);
+        if scattering.specular().is_some() {
+            let (split, frame) = walker.split(surface, scattering);
+            if let Some(child) = &split.reflected {
+                walker.follow(node, surface, &frame, child);
+            }
+            if let Some(child) = &split.transmitted {
+                walker.follow(node, surface, &frame, child);
+            }
+        }
+        local
+    }
+}
+
+impl Walker<'_, Whitted> {
+    /// Emission, ambient light, and light from the lights.
+    #[inline]
+    fn local_light(&mut self, node: &Node<()>, surface: &SurfaceInteraction, scattering: &Scattering) -> Rgb {
+        let mut local = Rgb::ZERO;
+        if surface.front {
+            local += scattering.emitted;
+        }
+        if self.plan.ambient {
+            local += scattering.ambient * self.scene.ambient;
+        }
+        if self.plan.lights > 0 && scattering.answers_lights() {
+            let normal = shading_normal(surface);
+            let medium = self.plan.absorption.then(|| self.medium(node, surface, Side::Incident));
+            let medium = medium.map(|medium| *self.scene.absorption_of(medium));
+            let (scene, shadow) = (self.scene, self.settings.shadow);
+            local += direct(scene, shadow, medium, surface, normal, scattering, &mut self.stats);
+        }
+        local
+    }
+
+    /// Puts a child on the stack, unless it is too deep or too faint.
+    #[inline]
+    fn follow(
+        &mut self,
+        parent: &Node<()>,
+        surface: &SurfaceInteraction,
+        frame: &Frame,
+        child: &Sample<f64>,
+    ) {
+        let throughput = parent.throughput * child.weight;
+        let eta_squared = parent.eta_squared * (child.eta * child.eta);
+        let weight = throughput.max_element() * eta_squared;
+        let depth = parent.depth + 1;
+        if depth > self.settings.deepest() || weight < self.settings.cutoff {
+            self.given_up += weight;
+            return;
+        }
+        let side = side(child);
+        match side {
+            Side::Incident => self.stats.reflected_rays += 1,
+            Side::Transmitted => self.stats.transmitted_rays += 1,
+        }
+        let direction = frame.to_world(child.wi);
+        // One Newton step towards unit length: without it errors grow along a long chain.
+        let direction = direction * (1.5 - 0.5 * direction.dot(direction));
+        self.stack.push(Node {
+            query: surface.leave(direction, side),
+            throughput,
+            eta_squared,
+            depth,
+            medium: self.medium(parent, surface, side),
+            memory: (),
+        });
+    }
+}
