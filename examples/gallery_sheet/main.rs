@@ -100,7 +100,7 @@ fn picture(
     max_depth: Option<u32>,
     size: [u32; 2],
 ) -> Result<Vec<u8>, Box<dyn Error>> {
-    let loaded = load::scene_file(&gallery.join(name).with_extension("toml"))?;
+    let loaded = load::scene_file(&gallery.join(name).with_extension("toml"), load::SceneOptions::default())?;
     let own = loaded.settings;
     let settings = Settings { size, spp: SAMPLES, max_depth: max_depth.or(own.max_depth), ..own };
     let rendering = render(&loaded.scene, &settings, &())?;

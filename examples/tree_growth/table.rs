@@ -30,7 +30,7 @@ pub(crate) struct Growth {
 
 /// Renders a scene with this depth limit and cut-off.
 pub(crate) fn growth(scene: &Path, max_depth: u32, cutoff: f64) -> Result<Growth, Box<dyn Error>> {
-    let loaded = load::scene_file(scene)?;
+    let loaded = load::scene_file(scene, load::SceneOptions::default())?;
     let settings =
         Settings { size: SIZE, spp: 1, max_depth: Some(max_depth), cutoff, threads: 1, ..loaded.settings };
     let rendering = render(&loaded.scene, &settings, &())?;

@@ -7,7 +7,8 @@ use vitrum::io::load;
 #[test]
 fn every_scene_loads_without_a_warning_and_renders_without_a_bad_sample() {
     for name in names() {
-        let loaded = load::scene_file(&gallery().join(&name).with_extension("toml"));
+        let loaded =
+            load::scene_file(&gallery().join(&name).with_extension("toml"), load::SceneOptions::default());
         let loaded = loaded.unwrap_or_else(|problems| panic!("{problems}"));
         assert_eq!(loaded.warnings.to_string(), "", "{name}");
         let pixels = picture(&described(&name), [48, 48], 1);

@@ -110,6 +110,11 @@ pub(crate) struct Render {
     #[arg(long, value_name = "N", default_value_t = 16, value_parser = whole::<1, 4096>, allow_negative_numbers = true)]
     pub(crate) tile: u32,
 
+    /// Take environments with texels that are no radiance: 0 for what is not a number or negative, the largest finite value
+    /// for what is infinite
+    #[arg(long)]
+    pub(crate) repair: bool,
+
     /// No progress, no warnings, no summary
     #[arg(short, long)]
     pub(crate) quiet: bool,
@@ -122,6 +127,10 @@ pub(crate) struct Render {
 pub(crate) struct Inspect {
     /// Scene (.toml) or model (.obj); the built-in scene without
     pub(crate) scene: Option<PathBuf>,
+
+    /// Take environments with texels that are no radiance, as `render` does
+    #[arg(long)]
+    pub(crate) repair: bool,
 
     #[command(flatten)]
     pub(crate) model: Model,

@@ -3,13 +3,18 @@
 use crate::args::Model;
 use crate::failure::Failure;
 use std::path::Path;
-use vitrum_io::load::{self, Loaded};
+use vitrum_io::load::{self, Loaded, SceneOptions};
 
 /// The built-in scene.
 const DEFAULT_SCENE: &str = include_str!("../../../scenes/default.toml");
 
 /// Loads what the command line names; a model is framed for a picture of `size`, where that is given.
-pub(crate) fn load(path: Option<&Path>, model: &Model, size: Option<[u32; 2]>) -> Result<Loaded, Failure> {
+pub(crate) fn load(
+    path: Option<&Path>,
+    options: SceneOptions,
+    model: &Model,
+    size: Option<[u32; 2]>,
+) -> Result<Loaded, Failure> {
     let extension = path.and_then(Path::extension).map(|e| e.to_string_lossy().to_ascii_lowercase());
     match (path, extension.as_deref()) {
         (Some(_), Some("obj")) if model.has_idle_index() => Err(Failure::usage(
@@ -26,6 +31,6 @@ pub(crate) fn load(path: Option<&Path>, model: &Model, size: Option<[u32; 2]>) -
             "--material, --ior and --normals are for models (.obj); a scene says so itself",
         )),
         (None, _) => Ok(load::scene_text("built-in scene", DEFAULT_SCENE, Path::new(""))?),
-        (Some(path), _) => Ok(load::scene_file(path)?),
+        (Some(path), _) => Ok(load::scene_file(path, options)?),
     }
 }

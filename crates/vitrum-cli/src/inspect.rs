@@ -7,13 +7,18 @@ use crate::terminal;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::process::ExitCode;
-use vitrum_io::load::{Loaded, MeshReport};
+use vitrum_io::load::{Loaded, MeshReport, SceneOptions};
 use vitrum_materials::{Material, Phong, Texture};
 use vitrum_math::{DVec3, Rgb};
-use vitrum_tracer::{Branching, Falloff, Integrator, Light, Plan, Projection, Settings};
+use vitrum_tracer::{Background, Branching, Falloff, Integrator, Light, Plan, Projection, Settings};
 
 pub(crate) fn run(arguments: &Inspect) -> Result<ExitCode, Failure> {
-    let loaded = input::load(arguments.scene.as_deref(), &arguments.model, None)?;
+    let loaded = input::load(
+        arguments.scene.as_deref(),
+        SceneOptions { repair: arguments.repair },
+        &arguments.model,
+        None,
+    )?;
     let mut report = String::new();
     // Writing to a String can't fail.
     let _ = describe(&mut report, &loaded);
@@ -52,6 +57,19 @@ fn describe(out: &mut String, loaded: &Loaded) -> std::fmt::Result {
     }
     for light in &scene.lights {
         writeln!(out, "light      {}", describe_light(light))?;
+    }
+    if let Background::Environment(map) = &scene.background {
+        let [width, height] = map.size();
+        writeln!(out, "background {width} x {height} texels, brightest {:.4}", map.brightest())?;
+        for sun in map.suns() {
+            writeln!(
+                out,
+                "  sun      from direction {}, irradiance {:.4}, {:.1} % of all light",
+                point(sun.towards),
+                sun.irradiance,
+                100.0 * sun.share
+            )?;
+        }
     }
     writeln!(out)?;
     objects(out, loaded)?;
@@ -130,9 +148,10 @@ fn plan(out: &mut String, plan: &Plan, loaded: &Loaded, integrator: Integrator) 
     let asked = match integrator {
         Integrator::Whitted => format!("{} asked at each point that reflects", count(plan.lights, "light")),
         Integrator::Path => format!(
-            "one of {} ({}) asked at each point that scatters",
+            "one of {} ({}, {} of the background) asked at each point that scatters",
             count(plan.lights, "light"),
-            count(plan.area_lights, "shining object")
+            count(plan.area_lights, "shining object"),
+            count(plan.environment_lights, "part")
         ),
     };
     let rows: [(&str, bool, String); 14] = [

@@ -10,7 +10,7 @@ use crate::terminal::say;
 use std::process::ExitCode;
 use std::time::Instant;
 use vitrum_io::image::{self, ImageView};
-use vitrum_io::load::Loaded;
+use vitrum_io::load::{Loaded, SceneOptions};
 use vitrum_materials::Material;
 use vitrum_math::{Rgb, Sequence};
 use vitrum_tracer::{
@@ -28,7 +28,8 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
     // Before anything that takes long: a picture that can't be written is not worth rendering.
     image::check_writable(&arguments.output)?;
     let interrupt = Interrupt::listen()?;
-    let load = || input::load(arguments.scene.as_deref(), &arguments.model, arguments.size);
+    let options = SceneOptions { repair: arguments.repair };
+    let load = || input::load(arguments.scene.as_deref(), options, &arguments.model, arguments.size);
     let loaded = on_threads(arguments.threads as usize, load)??;
     if !arguments.quiet {
         say(&loaded.warnings.to_string());

@@ -23,7 +23,7 @@ fn every_scene_of_ours_loads() {
         let scenes = scenes(folder);
         assert!(!scenes.is_empty(), "scenes/{folder} has no scenes");
         for path in scenes {
-            match load::scene_file(&path) {
+            match load::scene_file(&path, load::SceneOptions::default()) {
                 Ok(Loaded { scene, .. }) if scene.names().is_empty() => {
                     problems.push(format!("{}: there is nothing to see", path.display()));
                 }
@@ -96,7 +96,9 @@ fn descriptions_that_refer_to_nothing_are_refused() {
 
 #[test]
 fn scenes_named_by_a_missing_file_or_folder_say_so() {
-    let said = |path: &Path| load::scene_file(path).expect_err("there is no scene").to_string();
+    let said = |path: &Path| {
+        load::scene_file(path, load::SceneOptions::default()).expect_err("there is no scene").to_string()
+    };
     assert!(said(Path::new("no/such.toml")).contains("no/such.toml: there is no such scene file"));
     assert!(said(Path::new(env!("CARGO_MANIFEST_DIR"))).contains("is a folder, expected a scene file"));
 }

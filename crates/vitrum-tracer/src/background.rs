@@ -1,9 +1,11 @@
 //! What a ray sees that hits nothing.
 
+use crate::environment::EnvironmentMap;
+use std::sync::Arc;
 use vitrum_math::{DVec3, Rgb};
 
 /// The radiance that arrives from infinitely far away.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Background {
     /// The same from everywhere.
     Constant(Rgb),
@@ -14,6 +16,8 @@ pub enum Background {
         /// Radiance from straight above.
         top: Rgb,
     },
+    /// A picture of all directions. Paths ask for its light as they do for that of objects that shine.
+    Environment(Arc<EnvironmentMap>),
 }
 
 impl Background {
@@ -26,6 +30,7 @@ impl Background {
                 let up = (direction.y + 1.0) * 0.5;
                 *bottom * (1.0 - up) + *top * up
             }
+            Self::Environment(map) => map.radiance(direction),
         }
     }
 
@@ -34,6 +39,7 @@ impl Background {
         match self {
             Self::Constant(colour) => colour.max_element(),
             Self::Gradient { bottom, top } => bottom.max(*top).max_element(),
+            Self::Environment(map) => map.brightest(),
         }
     }
 }

@@ -10,6 +10,8 @@
 mod background;
 mod camera;
 mod direct;
+mod environment;
+mod environment_sampler;
 mod film;
 mod light;
 mod light_sampler;
@@ -24,6 +26,8 @@ mod whitted;
 
 pub use background::Background;
 pub use camera::{Camera, CameraError, Projection};
+pub use environment::{EnvironmentError, EnvironmentMap};
+pub use environment_sampler::Sun;
 pub use film::Film;
 pub use light::{Falloff, Light};
 pub use plan::Plan;

@@ -3,12 +3,15 @@
 //! Lights are points, spots and directions, and objects of an emissive material. A point asks one of them, chosen in proportion
 //! to a rough estimate of the irradiance that it gives there (up to [`MOST_ESTIMATED`] lights; by power beyond), so that the
 //! share of a light in the noise is about that in the light. An emissive object whose shape can't be sampled is no light here:
-//! paths find it by chance.
+//! paths find it by chance; so they do a background that is no picture.
 
+use crate::background::Background;
+use crate::environment_sampler::EnvironmentSampler;
 use crate::light::Light;
 use crate::scene::Scene;
-use crate::settings::Integrator;
+use crate::settings::{Integrator, LightSampling, Settings};
 use std::f64::consts::PI;
+use std::sync::Arc;
 use vitrum_geometry::{AreaSampler, SurfaceInteraction};
 use vitrum_materials::{Material, Texture};
 use vitrum_math::{DVec3, Rgb};
@@ -23,6 +26,8 @@ pub(crate) enum Source {
     Delta(usize),
     /// An emissive object.
     Area { object: u32, sampler: AreaSampler },
+    /// A part of the environment.
+    Environment(usize),
 }
 
 /// The lights of a scene.
@@ -33,22 +38,29 @@ pub(crate) struct LightSampler {
     powers: Option<Vec<f64>>,
     /// For each object its place among the sources.
     of_object: Vec<Option<u32>>,
+    /// The environment, whose parts are the last sources.
+    environment: Option<EnvironmentSampler>,
     /// Centre and radius of everything, for lights that are infinitely far away.
     scene: (DVec3, f64),
 }
 
 impl LightSampler {
-    /// The lights that an integrator asks by way of this: paths all, ray trees none.
-    pub(crate) fn of(scene: &Scene, integrator: Integrator) -> Self {
-        match integrator {
-            Integrator::Path => Self::new(scene),
-            Integrator::Whitted => {
-                Self { sources: Vec::new(), powers: None, of_object: Vec::new(), scene: (DVec3::ZERO, 1.0) }
-            }
+    /// The lights that are asked by way of this: by paths all, by ray trees none.
+    pub(crate) fn of(scene: &Scene, settings: &Settings) -> Self {
+        match settings.integrator {
+            // What is left to light that is met must be met.
+            Integrator::Path => Self::new(scene, settings.light_sampling == LightSampling::Mis),
+            Integrator::Whitted => Self {
+                sources: Vec::new(),
+                powers: None,
+                of_object: Vec::new(),
+                environment: None,
+                scene: (DVec3::ZERO, 1.0),
+            },
         }
     }
 
-    fn new(scene: &Scene) -> Self {
+    fn new(scene: &Scene, compensated: bool) -> Self {
         let mut sources: Vec<Source> = (0..scene.lights.len()).map(Source::Delta).collect();
         let objects = scene.aggregate().objects();
         let mut of_object = vec![None; objects.len()];
@@ -62,13 +74,19 @@ impl LightSampler {
                 sources.push(Source::Area { object: id, sampler });
             }
         }
+        let environment = match &scene.background {
+            Background::Environment(map) => Some(EnvironmentSampler::new(Arc::clone(map), compensated)),
+            _ => None,
+        };
+        let parts = environment.as_ref().map_or(0, EnvironmentSampler::len);
+        sources.extend((0..parts).map(Source::Environment));
         let bounds = scene.aggregate().bounds();
         let whole = if bounds.is_empty() {
             (DVec3::ZERO, 1.0)
         } else {
             (bounds.centre(), bounds.extent().length() * 0.5)
         };
-        let mut all = Self { sources, powers: None, of_object, scene: whole };
+        let mut all = Self { sources, powers: None, of_object, environment, scene: whole };
         if all.sources.len() > MOST_ESTIMATED {
             let mut sum = 0.0;
             let up_to = |source: &Source| {
@@ -88,6 +106,16 @@ impl LightSampler {
     /// Emissive objects among them.
     pub(crate) fn areas(&self) -> usize {
         self.sources.iter().filter(|s| matches!(s, Source::Area { .. })).count()
+    }
+
+    /// Parts of the environment among them.
+    pub(crate) fn parts(&self) -> usize {
+        self.environment.as_ref().map_or(0, EnvironmentSampler::len)
+    }
+
+    /// What parts of the environment are asked by.
+    pub(crate) fn environment(&self) -> Option<&EnvironmentSampler> {
+        self.environment.as_ref()
     }
 
     /// A light for `u` in [0, 1), and how probable it is; `None` where no light reaches.
@@ -113,16 +141,30 @@ impl LightSampler {
     pub(crate) fn pdf(&self, scene: &Scene, from: DVec3, hit: &SurfaceInteraction) -> Option<f64> {
         let index = self.of_object[hit.object as usize]? as usize;
         let Source::Area { sampler, .. } = &self.sources[index] else { return None };
-        let density = sampler.pdf(from, hit);
+        Some(sampler.pdf(from, hit) * self.probability(scene, from, index))
+    }
+
+    /// The density, per steradian, with which a point asks for the background in a direction; `None` if that is no light.
+    #[inline]
+    pub(crate) fn pdf_of_background(&self, scene: &Scene, from: DVec3, direction: DVec3) -> Option<f64> {
+        let environment = self.environment.as_ref()?;
+        let (part, density) = environment.pdf(direction)?;
+        let index = self.sources.len() - environment.len() + part;
+        Some(density * self.probability(scene, from, index))
+    }
+
+    /// How probable it is that a point asks a light.
+    #[inline]
+    fn probability(&self, scene: &Scene, from: DVec3, index: usize) -> f64 {
         if self.sources.len() == 1 {
-            return Some(density);
+            return 1.0;
         }
         let mut estimated = [0.0; MOST_ESTIMATED];
         let up_to = match &self.powers {
             Some(powers) => &powers[..],
             None => self.estimate(scene, from, &mut estimated),
         };
-        Some(density * share(up_to, index) / up_to.last()?)
+        up_to.last().map_or(0.0, |total| share(up_to, index) / total)
     }
 
     /// The sum of the estimates of each light and all before it.
@@ -140,16 +182,24 @@ impl LightSampler {
                     let offset = centre - from;
                     sampler.weight() / offset.dot(offset).max(radius * radius)
                 }
+                Source::Environment(part) => self.irradiance(*part),
             };
             *up_to = sum;
         }
         &sums[..self.sources.len()]
     }
 
+    /// Roughly the irradiance that a part of the environment gives.
+    #[inline]
+    fn irradiance(&self, part: usize) -> f64 {
+        self.environment.as_ref().map_or(0.0, |environment| environment.irradiance(part))
+    }
+
     /// Roughly the power that reaches the scene, watts.
     fn power(&self, scene: &Scene, source: &Source) -> f64 {
         match source {
             Source::Area { sampler, .. } => PI * sampler.weight(),
+            Source::Environment(part) => PI * self.scene.1 * self.scene.1 * self.irradiance(*part),
             Source::Delta(light) => match &scene.lights[*light] {
                 Light::Directional { irradiance, .. } => {
                     PI * self.scene.1 * self.scene.1 * irradiance.max_element()

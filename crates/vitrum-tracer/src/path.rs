@@ -8,6 +8,7 @@
 //! Every estimate is unbiased: paths end by roulette, in proportion to their weight without the radiance factor, and not at
 //! a depth, unless one is set.
 
+use crate::environment_sampler::Asked;
 use crate::light_sampler::{Source, emitted};
 use crate::settings::{Branching, LightSampling};
 use crate::walker::{Node, Policy, Walker, shading_normal, side};
@@ -76,6 +77,15 @@ impl Policy for Path {
         walker.children(node, surface, scattering, address);
         light
     }
+
+    #[inline]
+    fn escape(walker: &Walker<'_, Self>, node: &Node<Trace>) -> f64 {
+        if walker.plan.environment_lights == 0 {
+            return 1.0;
+        }
+        let direction = node.query.ray.direction;
+        walker.share_met(node, |from| walker.lights.pdf_of_background(walker.scene, from, direction))
+    }
 }
 
 type PathNode = Node<Trace>;
@@ -92,7 +102,8 @@ impl Walker<'_, Path> {
     ) -> Rgb {
         let mut light = Rgb::ZERO;
         if surface.front && scattering.emitted != Rgb::ZERO {
-            light += scattering.emitted * self.met_by_chance(node, surface);
+            light +=
+                scattering.emitted * self.share_met(node, |from| self.lights.pdf(self.scene, from, surface));
         }
         if self.plan.lights > 0 && scattering.answers_lights() {
             light += self.ask_a_light(node, surface, scattering, address);
@@ -100,12 +111,12 @@ impl Walker<'_, Path> {
         light
     }
 
-    /// The weight of light that a path meets and could have asked for.
+    /// The weight of light that a path meets, where from the point at which its direction was chosen it could have been asked
+    /// for with a density per steradian.
     #[inline]
-    fn met_by_chance(&self, node: &PathNode, surface: &SurfaceInteraction) -> f64 {
+    fn share_met(&self, node: &PathNode, asked: impl FnOnce(DVec3) -> Option<f64>) -> f64 {
         let Some(Chance { pdf, from }) = node.memory.chance else { return 1.0 };
-        let asked = self.lights.pdf(self.scene, from, surface);
-        match (asked, self.settings.light_sampling) {
+        match (asked(from), self.settings.light_sampling) {
             (None, _) | (_, LightSampling::Bsdf) => 1.0,
             (Some(_), LightSampling::Lights) => 0.0,
             (Some(asked), LightSampling::Mis) => pdf / (pdf + asked),
@@ -133,9 +144,15 @@ impl Walker<'_, Path> {
                 let distance = if light.casts_shadows() { arrival.distance } else { 0.0 };
                 (arrival.towards, distance, arrival.irradiance / probability, None)
             }
-            Source::Area { .. } if self.settings.light_sampling == LightSampling::Bsdf => return Rgb::ZERO,
+            _ if self.settings.light_sampling == LightSampling::Bsdf => return Rgb::ZERO,
             // What no ray could meet any more is not asked for either: the weights of both ways belong together.
-            Source::Area { .. } if left == 0 => return Rgb::ZERO,
+            _ if left == 0 => return Rgb::ZERO,
+            Source::Environment(part) => {
+                let point = address.pair(node.memory.key, Purpose::LightPoint);
+                let asked = self.lights.environment().and_then(|all| all.sample(*part, point));
+                let Some(Asked { towards, radiance, pdf }) = asked else { return Rgb::ZERO };
+                (towards, f64::INFINITY, radiance, Some(pdf * probability))
+            }
             Source::Area { object, sampler } => {
                 let point = address.pair(node.memory.key, Purpose::LightPoint);
                 let Some(sample) = sampler.sample(surface.point, point) else { return Rgb::ZERO };

@@ -18,6 +18,8 @@ pub struct Plan {
     pub lights: usize,
     /// Objects that shine, among them.
     pub area_lights: usize,
+    /// Parts of the environment, among them: its suns, and the rest where it varies.
+    pub environment_lights: usize,
     /// Lights that objects block.
     pub shadow_lights: usize,
     /// Ambient light.
@@ -54,7 +56,7 @@ pub struct Plan {
 impl Plan {
     /// Looks at the scene.
     pub fn new(scene: &Scene, settings: &Settings) -> Self {
-        Self::with_lights(scene, settings, &LightSampler::of(scene, settings.integrator))
+        Self::with_lights(scene, settings, &LightSampler::of(scene, settings))
     }
 
     pub(crate) fn with_lights(scene: &Scene, settings: &Settings, sampler: &LightSampler) -> Self {
@@ -67,8 +69,10 @@ impl Plan {
         let all_lights = if is_path { sampler.len() } else { scene.lights.len() };
         let lights = if answers { all_lights } else { 0 };
         let area_lights = if answers { sampler.areas() } else { 0 };
-        let shadow_lights =
-            area_lights + scene.lights.iter().take(lights).filter(|l| l.casts_shadows()).count();
+        let environment_lights = if answers { sampler.parts() } else { 0 };
+        let shadow_lights = area_lights
+            + environment_lights
+            + scene.lights.iter().take(lights).filter(|l| l.casts_shadows()).count();
         let dielectrics = materials.iter().any(Material::is_dielectric);
         let varies = |t: &Texture| matches!(t, Texture::Checker(_));
         let textures = materials.iter().any(|m| match m {
@@ -88,6 +92,7 @@ impl Plan {
         Self {
             lights,
             area_lights,
+            environment_lights,
             absorption,
             thin_sheets: is_path && materials.iter().any(|m| matches!(m, Material::Thin(_))),
             rough,

@@ -85,7 +85,7 @@ pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Re
 
 /// Renders on the threads of the pool that it is called in, or on the calling one.
 fn render_here(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Rendering {
-    let lights = LightSampler::of(scene, settings.integrator);
+    let lights = LightSampler::of(scene, settings);
     let plan = Plan::with_lights(scene, settings, &lights);
     let mut film = Film::new(settings.area());
     let mut stats = Stats::default();

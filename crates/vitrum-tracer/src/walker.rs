@@ -31,6 +31,12 @@ pub(crate) trait Policy: Sized {
         scattering: &Scattering,
         address: &SampleAddress,
     ) -> Rgb;
+
+    /// The weight of the background, where a ray escapes.
+    #[inline]
+    fn escape(_walker: &Walker<'_, Self>, _node: &Node<Self::Memory>) -> f64 {
+        1.0
+    }
 }
 
 /// A ray, and what its radiance counts for.
@@ -92,7 +98,8 @@ impl<'s, P: Policy> Walker<'s, P> {
                 if self.plan.absorption {
                     node.throughput *= self.scene.absorption_of(node.medium).transmittance(f64::INFINITY);
                 }
-                radiance += node.throughput * self.scene.background.radiance(node.query.ray.direction);
+                let background = self.scene.background.radiance(node.query.ray.direction);
+                radiance += node.throughput * background * P::escape(self, &node);
                 continue;
             };
             let surface = self.scene.aggregate().interaction(&node.query, &hit);

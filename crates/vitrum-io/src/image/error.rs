@@ -21,6 +21,17 @@ pub enum ImageError {
         /// Its extension, if it has one.
         found: Option<String>,
     },
+    /// The file is not of a kind that holds radiance.
+    #[error(
+        "{}: {}, expected .hdr (Radiance) or .exr (OpenEXR)", path.display(),
+        found.as_ref().map_or_else(|| "the name has no extension".to_owned(), |found| format!("found the extension .{found}"))
+    )]
+    NoRadiance {
+        /// The file.
+        path: PathBuf,
+        /// Its extension, if it has one.
+        found: Option<String>,
+    },
     /// The image has no pixels, too many for its format, or not as many as its size says.
     #[error(
         "the image is {width} x {height} and has {pixels} pixels, expected 1 to 2147483647 each way and as many \
@@ -63,11 +74,12 @@ pub enum ImageError {
         source: std::io::Error,
     },
     /// The file is not an image of this format, is damaged, or lacks what is needed.
-    #[error("{}: the file cannot be read as an OpenEXR image with R, G and B ({message}); \
-             it may be damaged or cut off", path.display())]
+    #[error("{}: the file cannot be read as {format} ({message}); it may be damaged or cut off", path.display())]
     Decode {
         /// The file.
         path: PathBuf,
+        /// What it was expected to be.
+        format: &'static str,
         /// What the library said.
         message: String,
     },

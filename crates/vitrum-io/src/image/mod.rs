@@ -1,13 +1,15 @@
 //! Images out, and back in for comparing: linear OpenEXR and display-ready PNG.
 //!
 //! Pixels are linear Rec.709 radiance, in rows from the top, each from the left. The extension of the file's name
-//! decides the format: `.exr` keeps every bit (`openexr.rs`), `.png` is for looking at (`png.rs`, `tone.rs`).
+//! decides the format: `.exr` keeps every bit (`openexr.rs`), `.png` is for looking at (`png.rs`, `tone.rs`). Radiance that
+//! lights a scene is read from `.exr` too, and from `.hdr` (`radiance.rs`).
 //! Metadata is stored under keys that begin with `vitrum:`; it is all that a file says beside its pixels, so the same
 //! image gives the same bytes. A failure leaves no half of a file and the old one as it was.
 
 mod error;
 mod openexr;
 mod png;
+mod radiance;
 mod tone;
 
 use std::io::Write;
@@ -98,6 +100,19 @@ pub fn check_writable(path: &Path) -> Result<(), ImageError> {
 /// When the file cannot be read, is damaged, has no layer with R, G and B, or has more than 2^28 pixels.
 pub fn read_exr(path: &Path) -> Result<ImageRgb, ImageError> {
     openexr::read(path)
+}
+
+/// Reads linear radiance: an OpenEXR file as [`read_exr`] does, or a Radiance file (.hdr, .pic).
+///
+/// # Errors
+/// When the extension is none of these, the file cannot be read or is damaged, or it has more than 2^28 pixels.
+pub fn read_radiance(path: &Path) -> Result<ImageRgb, ImageError> {
+    let extension = path.extension().map(|extension| extension.to_string_lossy().into_owned());
+    match extension.as_deref().map(str::to_ascii_lowercase).as_deref() {
+        Some("exr") => openexr::read(path),
+        Some("hdr" | "pic") => radiance::read(path),
+        _ => Err(ImageError::NoRadiance { path: path.to_owned(), found: extension }),
+    }
 }
 
 fn format_of(path: &Path) -> Result<Format, ImageError> {

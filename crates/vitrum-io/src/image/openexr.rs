@@ -83,10 +83,14 @@ fn sort_attributes(bytes: &mut [u8]) -> Option<()> {
     Some(())
 }
 
-/// Reads R, G and B of the first layer that has them, with all text attributes, sorted.
+/// Reads R, G and B of the first layer that has them, in the file's display window, with all text attributes, sorted.
 pub(super) fn read(path: &Path) -> Result<ImageRgb, ImageError> {
     let unreadable = |source| ImageError::Unreadable { path: path.to_owned(), source };
-    let damaged = |message: String| ImageError::Decode { path: path.to_owned(), message };
+    let damaged = |message: String| ImageError::Decode {
+        path: path.to_owned(),
+        format: "an OpenEXR image with R, G and B",
+        message,
+    };
     let open = || {
         let file = File::open(path).map_err(unreadable)?;
         if !file.metadata().map_err(unreadable)?.is_file() {
@@ -97,9 +101,10 @@ pub(super) fn read(path: &Path) -> Result<ImageRgb, ImageError> {
     let headers =
         MetaData::read_from_buffered(open()?, false).map_err(|error| damaged(error.to_string()))?.headers;
     for header in &headers {
-        let Vec2(width, height) = header.layer_size;
-        if width.checked_mul(height).is_none_or(|pixels| pixels > MOST_PIXELS) {
-            return Err(damaged(format!("{width} x {height} pixels, more than {MOST_PIXELS}")));
+        for Vec2(width, height) in [header.layer_size, header.shared_attributes.display_window.size] {
+            if width.checked_mul(height).is_none_or(|pixels| pixels > MOST_PIXELS) {
+                return Err(damaged(format!("{width} x {height} pixels, more than {MOST_PIXELS}")));
+            }
         }
     }
     let image = ::exr::prelude::read()
@@ -127,7 +132,35 @@ pub(super) fn read(path: &Path) -> Result<ImageRgb, ImageError> {
         .collect();
     metadata.sort();
     let side = |side: usize| u32::try_from(side).map_err(|_| damaged(format!("a side of {side} pixels")));
-    let Vec2(width, height) = layer.size;
-    let (width, height) = (side(width)?, side(height)?);
-    Ok(ImageRgb { width, height, pixels: layer.channel_data.pixels.1, metadata })
+    let window = image.attributes.display_window;
+    let Vec2(left, top) = layer.attributes.layer_position - window.position;
+    let pixels = in_window(layer.channel_data.pixels.1, layer.size, (left, top), window.size);
+    let Vec2(width, height) = window.size;
+    Ok(ImageRgb { width: side(width)?, height: side(height)?, pixels, metadata })
+}
+
+/// The picture that a file means: what it holds, in its place in the window that is to be shown, which is black elsewhere.
+fn in_window(
+    pixels: Vec<[f32; 3]>,
+    held: Vec2<usize>,
+    (left, top): (i32, i32),
+    window: Vec2<usize>,
+) -> Vec<[f32; 3]> {
+    if held == window && (left, top) == (0, 0) {
+        return pixels;
+    }
+    let mut shown = vec![[0.0; 3]; window.0 * window.1];
+    let place = |at: usize, offset: i32, size: usize| {
+        let at = i64::try_from(at).ok()? + i64::from(offset);
+        usize::try_from(at).ok().filter(|at| *at < size)
+    };
+    for (row, line) in pixels.chunks_exact(held.0.max(1)).enumerate() {
+        let Some(y) = place(row, top, window.1) else { continue };
+        for (column, pixel) in line.iter().enumerate() {
+            if let Some(x) = place(column, left, window.0) {
+                shown[y * window.0 + x] = *pixel;
+            }
+        }
+    }
+    shown
 }

@@ -3,12 +3,13 @@
 use super::matter::Matter;
 use super::meshes::{MeshReport, Meshes};
 use super::naming::{self, Names};
-use super::{LoadError, Loaded, error};
+use super::{LoadError, Loaded, SceneOptions, environment, error};
 use crate::diagnostic::{Diagnostic, Diagnostics, Source};
 use crate::image::{Display, Tone};
 use crate::scene::{self, MaterialChoice, Normals, SceneDesc, Step};
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 use vitrum_geometry::Object;
 use vitrum_geometry::mesh::Build;
 use vitrum_geometry::shape::{Cuboid, Cylinder, Disk, Plane, Rectangle, Shape, ShapeError, Sphere};
@@ -41,6 +42,7 @@ pub(super) fn lower(
     folder: &Path,
     meshes: Meshes,
     problems: Diagnostics,
+    options: SceneOptions,
 ) -> Result<Loaded, LoadError> {
     let mut lowering = Lowering {
         desc,
@@ -71,11 +73,12 @@ pub(super) fn lower(
         lowering.object(object);
     }
     let camera = lowering.camera();
+    let background = background(&desc.background, source, folder, options, &mut lowering.problems);
     let Lowering { matter, mut problems, objects, reports, .. } = lowering;
     let scene = camera.filter(|_| !problems.has_errors()).map(|camera| Scene::new(objects, camera));
     match scene {
         Some(Ok(mut scene)) => {
-            scene.background = background(&desc.background);
+            scene.background = background;
             scene.medium = matter.medium;
             scene.absorption = matter.absorption;
             (scene.ambient, scene.lights) = lights(&desc.lights);
@@ -433,10 +436,35 @@ fn lights(described: &[scene::Light]) -> (Rgb, Vec<Light>) {
     (ambient, lights.into_iter().map(|(_, light)| light).collect())
 }
 
-fn background(described: &scene::Background) -> Background {
-    match *described {
-        scene::Background::Constant { color } => Background::Constant(color),
-        scene::Background::Gradient { bottom, top } => Background::Gradient { bottom, top },
+fn background(
+    described: &scene::Background,
+    source: &Source<'_>,
+    folder: &Path,
+    options: SceneOptions,
+    problems: &mut Diagnostics,
+) -> Background {
+    match described {
+        scene::Background::Constant { color } => Background::Constant(*color),
+        scene::Background::Gradient { bottom, top } => Background::Gradient { bottom: *bottom, top: *top },
+        scene::Background::Image { file, file_span, rotation, scale } => {
+            let path = folder.join(file);
+            match environment::read(&path, rotation.to_radians(), *scale, options.repair) {
+                Ok((map, repaired)) => {
+                    if let Some(repaired) = repaired {
+                        problems.push(Diagnostic::warning(path.display().to_string(), repaired));
+                    }
+                    Background::Environment(Arc::new(map))
+                }
+                Err(refused) => {
+                    let problem = error(source, *file_span, refused.message, "this file");
+                    problems.push(match refused.help {
+                        Some(help) => problem.help(help),
+                        None => problem,
+                    });
+                    Background::Constant(Rgb::ZERO)
+                }
+            }
+        }
     }
 }
 

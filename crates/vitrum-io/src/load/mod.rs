@@ -7,6 +7,7 @@
 //!
 //! Lowering goes on after a problem, so that all of them are told at once.
 
+mod environment;
 mod lower;
 mod matter;
 mod meshes;
@@ -43,6 +44,14 @@ pub struct Loaded {
     pub warnings: Diagnostics,
 }
 
+/// How a scene file is taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SceneOptions {
+    /// Texels of environments that are no radiance are replaced, and told in a warning, where they are an error otherwise: what
+    /// is not a number or negative by 0, what is infinite by the largest finite value of the picture.
+    pub repair: bool,
+}
+
 /// Why there is no scene.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -67,10 +76,10 @@ pub enum LoadError {
 ///
 /// # Errors
 /// [`LoadError`] when the file can't be read or has errors.
-pub fn scene_file(path: &Path) -> Result<Loaded, LoadError> {
+pub fn scene_file(path: &Path, options: SceneOptions) -> Result<Loaded, LoadError> {
     let text = read_text(path).map_err(|reason| LoadError::Unreadable { path: path.to_owned(), reason })?;
     let folder = path.parent().unwrap_or_else(|| Path::new(""));
-    scene_text(&path.display().to_string(), &text, folder)
+    described(&path.display().to_string(), &text, folder, options)
 }
 
 /// The text of a scene file; else what is the matter, and what to do.
@@ -108,9 +117,14 @@ fn read_text(path: &Path) -> Result<String, String> {
 /// # Errors
 /// [`LoadError::Invalid`] with all problems.
 pub fn scene_text(name: &str, text: &str, folder: &Path) -> Result<Loaded, LoadError> {
+    described(name, text, folder, SceneOptions::default())
+}
+
+fn described(name: &str, text: &str, folder: &Path, options: SceneOptions) -> Result<Loaded, LoadError> {
     let (desc, diagnostics) = scene::parse(name, text);
+    let source = Source::new(name, text);
     match desc {
-        Some(desc) => lower::lower(&desc, &Source::new(name, text), folder, Meshes::default(), diagnostics),
+        Some(desc) => lower::lower(&desc, &source, folder, Meshes::default(), diagnostics, options),
         None => Err(LoadError::Invalid(diagnostics)),
     }
 }
@@ -125,7 +139,8 @@ pub fn model_file(path: &Path, options: &ModelOptions) -> Result<Loaded, LoadErr
         .map_err(|reason| LoadError::Unreadable { path: path.to_owned(), reason })?;
     let name = path.display().to_string();
     let files = Meshes::holding(path, file);
-    lower::lower(&desc, &Source::new(&name, ""), Path::new(""), files, Diagnostics::default())
+    let options = SceneOptions::default();
+    lower::lower(&desc, &Source::new(&name, ""), Path::new(""), files, Diagnostics::default(), options)
 }
 
 /// Loads a scene that was described in code. Its files are looked for in `folder`.
@@ -133,7 +148,8 @@ pub fn model_file(path: &Path, options: &ModelOptions) -> Result<Loaded, LoadErr
 /// # Errors
 /// [`LoadError::Invalid`] with all problems.
 pub fn description(desc: &SceneDesc, folder: &Path) -> Result<Loaded, LoadError> {
-    lower::lower(desc, &Source::new("scene", ""), folder, Meshes::default(), Diagnostics::default())
+    let (source, options) = (Source::new("scene", ""), SceneOptions::default());
+    lower::lower(desc, &source, folder, Meshes::default(), Diagnostics::default(), options)
 }
 
 /// A problem at a place of the source.

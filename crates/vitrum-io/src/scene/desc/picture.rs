@@ -1,5 +1,7 @@
 //! Settings, output, camera and background.
 
+use std::path::PathBuf;
+
 use vitrum_math::{DVec3, Rgb};
 
 use crate::diagnostic::Span;
@@ -128,6 +130,17 @@ pub enum Background {
         bottom: Rgb,
         /// At y = 1.
         top: Rgb,
+    },
+    /// A picture of all directions, of latitude and longitude.
+    Image {
+        /// A Radiance or OpenEXR file; relative to the scene file.
+        file: PathBuf,
+        /// Where the file stands.
+        file_span: Span,
+        /// Degrees about +Y, counterclockwise seen from above.
+        rotation: f64,
+        /// Factor of all radiance, 0 or more.
+        scale: f64,
     },
 }
 

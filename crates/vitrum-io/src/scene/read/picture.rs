@@ -133,6 +133,16 @@ pub(super) fn background(cx: &mut Context<'_>, table: &DeTable<'_>, span: Span) 
             let (bottom, top) = (fields.colour("bottom"), fields.colour("top"));
             bottom.zip(top).map(|(bottom, top)| Background::Gradient { bottom, top })
         }
+        Some("image") => {
+            let (file, rotation, scale) =
+                (fields.text("file"), fields.number("rotation"), fields.number("scale"));
+            file.zip(rotation).zip(scale).map(|((file, rotation), scale)| Background::Image {
+                file: file.text.into(),
+                file_span: file.span,
+                rotation,
+                scale,
+            })
+        }
         Some(other) => panic!("no reader for a {other} background"),
         None => None,
     };

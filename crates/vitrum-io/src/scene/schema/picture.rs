@@ -192,7 +192,28 @@ pub const BACKGROUND: Table = Table {
                     Key::light("top", "radiance straight up").unit("W/(m² sr)"),
                 ],
             },
+            Variant {
+                name: "image",
+                meaning: "A picture of all directions by latitude and longitude: its upper edge is straight up, its middle in the \
+                          direction -Z, and what is right of that towards +X.",
+                keys: &[
+                    Key::new(
+                        "file",
+                        Kind::File,
+                        "a Radiance (.hdr) or OpenEXR (.exr) file, its path relative to the scene file",
+                    ),
+                    Key::new("rotation", Kind::Number, "about the axis +Y, counterclockwise seen from above")
+                        .unit("degrees")
+                        .default("0.0"),
+                    Key::new("scale", Kind::Number, "factor of its radiance")
+                        .range(Range::AtLeast(0.0))
+                        .default("1.0"),
+                ],
+            },
         ],
     }),
-    hints: &[],
+    hints: &[
+        ("exposure", "the factor of all radiance is `scale`"),
+        ("strength", "the factor of all radiance is `scale`"),
+    ],
 };
