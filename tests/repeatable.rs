@@ -5,7 +5,7 @@
 use std::fs;
 use std::path::Path;
 use vitrum::io::load::{Loaded, scene_text};
-use vitrum::tracer::{Crop, Rendering, Settings, render};
+use vitrum::tracer::{Crop, Ended, Rendering, Settings, render};
 
 /// Lights, textures and materials of all scenes. What can go without a name does.
 const COMMON: &str = r#"
@@ -273,7 +273,7 @@ fn ring_of_triangles() -> String {
 fn picture(loaded: &Loaded, settings: Settings) -> Rendering {
     let rendering = render(&loaded.scene, &settings, &()).expect("the settings make a picture");
     assert_eq!(rendering.stats.dropped, 0);
-    assert!(rendering.complete);
+    assert_eq!(rendering.ended, Ended::Samples);
     rendering
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use vitrum::io::load::{self, Loaded};
 use vitrum::io::scene::{self, MaterialChoice, Model, SceneDesc};
 use vitrum::math::Rgb;
-use vitrum::tracer::{Settings, render};
+use vitrum::tracer::{Ended, Settings, render};
 
 pub(crate) fn gallery() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/gallery")
@@ -40,7 +40,7 @@ pub(crate) fn picture(desc: &SceneDesc, size: [u32; 2], spp: u32) -> Vec<[f32; 3
     let loaded = loaded(desc);
     let settings = Settings { size, spp, ..loaded.settings };
     let rendering = render(&loaded.scene, &settings, &()).expect("the settings make a picture");
-    assert!(rendering.complete);
+    assert_eq!(rendering.ended, Ended::Samples);
     assert_eq!(rendering.stats.dropped, 0, "{:?}", rendering.stats.first_dropped);
     rendering.film.image()
 }

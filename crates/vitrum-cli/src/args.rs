@@ -3,10 +3,11 @@
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 use vitrum_io::load::{ModelMaterial, ModelOptions};
 use vitrum_io::scene::Normals;
 use vitrum_math::Sequence;
-use vitrum_tracer::{Branching, Crop, Integrator, LightSampling};
+use vitrum_tracer::{Branching, Crop, Integrator, LightSampling, Target};
 
 /// Renders glass, accurately and fast.
 #[derive(Debug, Parser)]
@@ -61,6 +62,27 @@ pub(crate) struct Render {
     /// Samples per pixel, in place of the scene's
     #[arg(long, value_name = "N", value_parser = whole::<1, 1_000_000>, allow_negative_numbers = true)]
     pub(crate) spp: Option<u32>,
+
+    /// Error that is enough: noise=1% in every part of the picture, or relmse=1e-3 on average. Then --spp is the most that a
+    /// pixel gets
+    #[arg(long, value_name = "ERROR", value_parser = target)]
+    pub(crate) until: Option<Target>,
+
+    /// Time to render: 90s, 5m, 2h. Ends on a whole round of samples; --spp is the most that a pixel gets
+    #[arg(long, value_name = "TIME", value_parser = duration)]
+    pub(crate) time: Option<Duration>,
+
+    /// Go on with a render that was stopped, from the checkpoint beside the picture: FILE.checkpoint
+    #[arg(long)]
+    pub(crate) resume: bool,
+
+    /// Keep a checkpoint beside the picture: after each round, and at the end, to go on with more samples
+    #[arg(long)]
+    pub(crate) checkpoint: bool,
+
+    /// What an .exr is to hold beside radiance: the standard error of each pixel, the number of its samples
+    #[arg(long, value_enum, value_name = "C", value_delimiter = ',')]
+    pub(crate) channels: Vec<ChannelChoice>,
 
     /// How light is followed, in place of the scene's choice
     #[arg(long, value_enum, value_name = "I")]
@@ -151,6 +173,14 @@ pub(crate) struct Model {
     /// Normals that the model is shaded with [default: the file's, else smooth]
     #[arg(long, value_enum, value_name = "N")]
     pub(crate) normals: Option<NormalsChoice>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ChannelChoice {
+    /// Standard error of the mean, by channel: error.R, error.G, error.B
+    Error,
+    /// Samples taken: samples.Y
+    Samples,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -298,6 +328,35 @@ fn whole<const MIN: u32, const MAX: u32>(text: &str) -> Result<u32, String> {
     number.ok_or_else(|| format!("expected a whole number from {MIN} to {MAX}"))
 }
 
+/// `noise=1%`, `noise=0.01` or `relmse=1e-3`.
+fn target(text: &str) -> Result<Target, String> {
+    let number = |text: &str| text.trim().parse().ok().filter(|n: &f64| *n > 0.0 && *n < 1.0);
+    let share = |text: &str| match text.strip_suffix('%') {
+        Some(percent) => percent.trim().parse().ok().map(|n: f64| n / 100.0).filter(|n| *n > 0.0 && *n < 1.0),
+        None => number(text),
+    };
+    let found = match text.split_once('=') {
+        Some(("noise", limit)) => share(limit).map(Target::Noise),
+        Some(("relmse", limit)) => number(limit).map(Target::RelMse),
+        _ => None,
+    };
+    found.ok_or_else(|| "expected noise=1% or relmse=1e-3, above 0 and below 100 %".to_owned())
+}
+
+/// `90s`, `5m`, `2h`, or seconds without a unit.
+fn duration(text: &str) -> Result<Duration, String> {
+    let (number, unit) = match text.trim().char_indices().last() {
+        Some((at, 's')) => (&text[..at], 1.0),
+        Some((at, 'm')) => (&text[..at], 60.0),
+        Some((at, 'h')) => (&text[..at], 3600.0),
+        _ => (text, 1.0),
+    };
+    let seconds = number.trim().parse().ok().map(|n: f64| n * unit).filter(|s| *s > 0.0 && *s <= 3.2e7);
+    seconds
+        .map(Duration::from_secs_f64)
+        .ok_or_else(|| "expected a time above 0 and up to a year, such as 90s, 5m or 2h".to_owned())
+}
+
 fn seed(text: &str) -> Result<u64, String> {
     text.parse().map_err(|_| format!("expected a whole number from 0 to {}", u64::MAX))
 }
@@ -333,6 +392,25 @@ mod tests {
         assert!(size("0x480").is_err() && size("640").is_err() && size("-1x2").is_err());
         assert_eq!(crop("1, 2,3,4"), Ok(Crop { x: 1, y: 2, width: 3, height: 4 }));
         assert!(crop("1,2,3").is_err() && crop("1,2,0,4").is_err());
+    }
+
+    #[test]
+    fn errors_and_times_are_read() {
+        assert_eq!(target("noise=2%"), Ok(Target::Noise(0.02)));
+        assert_eq!(target("noise=0.5"), Ok(Target::Noise(0.5)));
+        assert_eq!(target("relmse=1e-3"), Ok(Target::RelMse(1e-3)));
+        for text in
+            ["", "noise", "noise=", "noise=0", "noise=100%", "noise=-1%", "relmse=1%", "rmse=1", "relmse=nan"]
+        {
+            assert!(target(text).is_err(), "{text}");
+        }
+        assert_eq!(duration("90s"), Ok(Duration::from_secs(90)));
+        assert_eq!(duration("1.5m"), Ok(Duration::from_secs(90)));
+        assert_eq!(duration("2h"), Ok(Duration::from_secs(7200)));
+        assert_eq!(duration("0.25"), Ok(Duration::from_millis(250)));
+        for text in ["", "s", "0", "-1s", "1d", "inf", "nan", "1e9h", "5 minutes", "3é"] {
+            assert!(duration(text).is_err(), "{text}");
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! What ends the program early, and the exit code that says so.
 
 use std::process::ExitCode;
+use vitrum_io::checkpoint::CheckpointError;
 use vitrum_io::image::{ImageError, WriteError};
 use vitrum_io::load::LoadError;
 use vitrum_tracer::RenderError;
@@ -57,6 +58,18 @@ impl From<LoadError> for Failure {
     fn from(error: LoadError) -> Self {
         let is_diagnostics = matches!(error, LoadError::Invalid(_));
         Self { is_diagnostics, ..Self::new(error.into(), USAGE) }
+    }
+}
+
+impl From<CheckpointError> for Failure {
+    fn from(error: CheckpointError) -> Self {
+        Self::new(error.into(), USAGE)
+    }
+}
+
+impl From<WriteError> for Failure {
+    fn from(error: WriteError) -> Self {
+        Self::new(error.into(), RUNNING)
     }
 }
 

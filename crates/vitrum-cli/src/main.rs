@@ -12,6 +12,7 @@ mod inspect;
 mod interrupt;
 mod progress;
 mod render;
+mod store;
 mod summary;
 mod terminal;
 

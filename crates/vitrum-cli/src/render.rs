@@ -1,20 +1,22 @@
 //! `vitrum render`.
 
-use crate::args::Render;
+use crate::args::{ChannelChoice, Render};
 use crate::failure::Failure;
 use crate::input;
 use crate::interrupt::Interrupt;
 use crate::progress::Watcher;
+use crate::store::Store;
 use crate::summary::{Phases, summary};
 use crate::terminal::say;
 use std::process::ExitCode;
 use std::time::Instant;
-use vitrum_io::image::{self, ImageView};
+use vitrum_io::image::{self, Channel, ImageView};
 use vitrum_io::load::{Loaded, SceneOptions};
 use vitrum_materials::Material;
 use vitrum_math::{Rgb, Sequence};
 use vitrum_tracer::{
-    Branching, Integrator, LightSampling, RenderError, Settings, ShadowMode, on_threads, render,
+    Branching, Ended, Integrator, LightSampling, RenderError, Rendering, Settings, ShadowMode, Target,
+    on_threads, render, resume,
 };
 
 /// The clock of the program: the libraries have none.
@@ -27,6 +29,11 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
     let start = now();
     // Before anything that takes long: a picture that can't be written is not worth rendering.
     image::check_writable(&arguments.output)?;
+    if !arguments.channels.is_empty() && !image::holds_channels(&arguments.output) {
+        return Err(Failure::usage(
+            "--channels: only .exr holds channels beside radiance; choose such a name for -o",
+        ));
+    }
     let interrupt = Interrupt::listen()?;
     let options = SceneOptions { repair: arguments.repair };
     let load = || input::load(arguments.scene.as_deref(), options, &arguments.model, arguments.size);
@@ -36,44 +43,102 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
     }
     let settings = settings(&loaded, arguments);
     check_integrator(&loaded, settings.integrator)?;
+    let store = Store::new(&arguments.output, &loaded, &settings)?;
+    let film = if arguments.resume { Some(store.read()?) } else { None };
     let loading = start.elapsed();
 
     let area = settings.area();
+    let is_limited = arguments.until.is_some() || arguments.time.is_some();
     let samples = u64::from(area.width) * u64::from(area.height) * u64::from(settings.spp);
-    let watcher = Watcher::new(samples, arguments.quiet, interrupt.clone());
-    let rendering = render(&loaded.scene, &settings, &watcher).map_err(|e| explain(e, &settings))?;
+    let watcher = Watcher::new(
+        (!is_limited).then_some(samples),
+        arguments.time,
+        arguments.quiet,
+        interrupt.clone(),
+        arguments.checkpoint.then_some(&store),
+    );
+    let was_begun = film.is_some();
+    let rendering = match film {
+        Some(film) => resume(&loaded.scene, &settings, film, &watcher),
+        None => render(&loaded.scene, &settings, &watcher),
+    };
+    let rendering = rendering.map_err(|e| explain(e, &settings))?;
     watcher.finish();
     let rendering_time = watcher.elapsed();
-    if rendering.stats.samples == 0 {
+    let is_stopped = rendering.ended == Ended::Stopped;
+    if is_stopped && rendering.stats.samples == 0 {
         if !arguments.quiet {
-            say(&format!("stopped before the first sample; {} is as it was\n", arguments.output.display()));
+            let kept = if was_begun { "; so is its checkpoint" } else { "" };
+            say(&format!(
+                "stopped before the first sample; {} is as it was{kept}\n",
+                arguments.output.display()
+            ));
         }
         return Ok(interrupt.code());
     }
 
     let writing = now();
+    // First: from it the picture can be made again, and not the other way round.
+    if is_stopped || arguments.checkpoint {
+        store.write(&rendering.film)?;
+    }
     let pixels = rendering.film.image();
     let view = ImageView { width: area.width, height: area.height, pixels: &pixels };
-    image::write(
-        &arguments.output,
-        view,
-        &metadata(&settings, rendering.film.fewest_samples()),
-        loaded.display,
-    )?;
+    let channels = channels(&rendering, &arguments.channels)?;
+    let metadata = metadata(&settings, rendering.film.samples());
+    image::write(&arguments.output, view, &channels, &metadata, loaded.display)?;
+    if let Some(trouble) = store.trouble() {
+        say(&format!("warning: a checkpoint could not be kept: {trouble}\n"));
+    }
+    if was_begun && !is_stopped && !arguments.checkpoint {
+        store.remove()?;
+    }
     let phases = Phases { loading, rendering: rendering_time, writing: writing.elapsed() };
 
     if !arguments.quiet {
-        say(&summary(&rendering, &phases, &arguments.output));
+        say(&summary(&rendering, is_limited, &phases, &arguments.output));
+        if is_stopped {
+            say(&format!("go on with the same command and --resume, from {}\n", store.path().display()));
+        }
     }
-    Ok(if rendering.complete { ExitCode::SUCCESS } else { interrupt.code() })
+    Ok(if is_stopped { interrupt.code() } else { ExitCode::SUCCESS })
 }
+
+/// What an .exr holds beside radiance.
+fn channels(rendering: &Rendering, asked: &[ChannelChoice]) -> Result<Vec<Channel>, Failure> {
+    let mut channels = Vec::new();
+    if asked.contains(&ChannelChoice::Error) {
+        let errors = rendering.film.standard_error().ok_or_else(|| {
+            Failure::usage(
+                "--channels error: a standard error takes at least two rounds: 9 samples per pixel",
+            )
+        })?;
+        for (c, name) in ["error.R", "error.G", "error.B"].into_iter().enumerate() {
+            let values = errors.iter().map(|pixel| pixel[c]).collect();
+            channels.push(Channel { name: name.to_owned(), values });
+        }
+    }
+    if asked.contains(&ChannelChoice::Samples) {
+        let values = rendering.film.sample_counts().into_iter().map(|n| n as f32).collect();
+        channels.push(Channel { name: "samples.Y".to_owned(), values });
+    }
+    Ok(channels)
+}
+
+/// Samples per pixel where an error or a time ends the render.
+const MOST_SAMPLES: u32 = 1_000_000;
 
 fn settings(loaded: &Loaded, arguments: &Render) -> Settings {
     let scene = &loaded.settings;
     Settings {
         size: arguments.size.unwrap_or(scene.size),
         crop: arguments.crop,
-        spp: arguments.spp.unwrap_or(scene.spp),
+        spp: match arguments.spp {
+            Some(spp) => spp,
+            None if arguments.until.is_some() || arguments.time.is_some() => MOST_SAMPLES,
+            None => scene.spp,
+        },
+        until: arguments.until,
         max_depth: arguments.max_depth.or(scene.max_depth),
         integrator: arguments.integrator.map_or(scene.integrator, Into::into),
         branching: arguments.branching.map_or(scene.branching, Into::into),
@@ -124,7 +189,22 @@ fn explain(error: RenderError, settings: &Settings) -> Failure {
 }
 
 /// What the picture says of itself: nothing that changes from run to run.
-fn metadata(settings: &Settings, samples: u32) -> Vec<(String, String)> {
+fn metadata(settings: &Settings, [least, most]: [u32; 2]) -> Vec<(String, String)> {
+    let mut pairs = decisive(settings);
+    let samples = if least == most { least.to_string() } else { format!("{least} to {most}") };
+    pairs.push(("spp".to_owned(), samples));
+    if let Some(target) = settings.until {
+        let (name, limit) = match target {
+            Target::RelMse(limit) => ("relmse", limit),
+            Target::Noise(limit) => ("noise", limit),
+        };
+        pairs.push(("until".to_owned(), format!("{name}={limit}")));
+    }
+    pairs
+}
+
+/// What decides the values of samples.
+pub(crate) fn decisive(settings: &Settings) -> Vec<(String, String)> {
     let shadow = match settings.shadow {
         ShadowMode::Opaque => "opaque",
         ShadowMode::Straight => "straight (biased)",
@@ -147,7 +227,6 @@ fn metadata(settings: &Settings, samples: u32) -> Vec<(String, String)> {
             },
         ),
         pair("size", format!("{width}x{height}")),
-        pair("spp", samples.to_string()),
         pair("max_depth", if depth == u32::MAX { "none".to_owned() } else { depth.to_string() }),
         pair("seed", settings.seed.to_string()),
     ];

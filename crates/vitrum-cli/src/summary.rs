@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 use std::time::Duration;
-use vitrum_tracer::Rendering;
+use vitrum_tracer::{Ended, Rendering};
 
 /// Where the time went.
 pub(crate) struct Phases {
@@ -12,8 +12,8 @@ pub(crate) struct Phases {
     pub(crate) writing: Duration,
 }
 
-/// The summary, several lines.
-pub(crate) fn summary(rendering: &Rendering, phases: &Phases, output: &Path) -> String {
+/// The summary, several lines. Why a render ended is said where something limits it beside the samples.
+pub(crate) fn summary(rendering: &Rendering, is_limited: bool, phases: &Phases, output: &Path) -> String {
     let stats = &rendering.stats;
     let seconds = |d: Duration| format!("{:.2} s", d.as_secs_f64());
     let rate = stats.rays() as f64 / phases.rendering.as_secs_f64().max(1e-9) / 1e6;
@@ -23,8 +23,11 @@ pub(crate) fn summary(rendering: &Rendering, phases: &Phases, output: &Path) -> 
         let _ = writeln!(text, "{name:<10} {value}");
     };
     let area = rendering.film.area();
-    let samples = rendering.film.fewest_samples();
-    let stopped = if rendering.complete { "" } else { " (stopped)" };
+    let samples = match rendering.film.samples() {
+        [least, most] if least == most => most.to_string(),
+        [least, most] => format!("{least} to {most}"),
+    };
+    let stopped = if rendering.ended == Ended::Stopped { " (stopped)" } else { "" };
     line(
         "wrote",
         format!(
@@ -54,6 +57,23 @@ pub(crate) fn summary(rendering: &Rendering, phases: &Phases, output: &Path) -> 
             stats.shadow_rays
         ),
     );
+    if let Some(error) = rendering.film.error() {
+        let [low, high] = error.interval;
+        let noise = 100.0 * error.rel_mse.sqrt();
+        line(
+            "error",
+            format!("relMSE {:.2e} (90 %: {low:.2e} to {high:.2e}), noise {noise:.2} %", error.rel_mse),
+        );
+    }
+    let ended = match rendering.ended {
+        Ended::Error => Some("the error to reach was reached"),
+        Ended::Time => Some("there was no time for another round"),
+        Ended::Samples if is_limited => Some("all samples were taken"),
+        Ended::Samples | Ended::Stopped => None,
+    };
+    if let Some(why) = ended {
+        line("ended", why.to_owned());
+    }
     let nodes = stats.nodes() as f64 / stats.samples.max(1) as f64;
     line("tree", format!("{nodes:.2} nodes per sample, deepest {}", stats.deepest));
     let given_up = rendering.film.given_up();

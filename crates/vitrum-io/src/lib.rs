@@ -4,12 +4,13 @@
 //!
 //! ```text
 //! scene.toml --scene::parse--> SceneDesc --load--> tracer::Scene --render--> Film --image::write--> .exr, .png
-//! model.obj  --obj::read-----> MeshData  --load--^
+//! model.obj  --obj::read-----> MeshData  --load--^                   Film <--checkpoint--> .checkpoint
 //! ```
 //!
 //! Whatever a file says is checked here, once, and every problem is told with its place ([`diagnostic`]).
 
 mod atomic;
+pub mod checkpoint;
 pub mod diagnostic;
 pub mod image;
 pub mod load;

@@ -43,8 +43,14 @@ fn exr_keeps_every_bit() {
     let path = folder.path().join("a.exr");
     for (width, height) in [(1, 1), (7, 5), (33, 40), (3, 100)] {
         let pixels = picture(width, height);
-        image::write(&path, ImageView { width, height, pixels: &pixels }, &metadata(), Display::default())
-            .expect("writable");
+        image::write(
+            &path,
+            ImageView { width, height, pixels: &pixels },
+            &[],
+            &metadata(),
+            Display::default(),
+        )
+        .expect("writable");
         let read = image::read_exr(&path).expect("readable");
         assert_eq!((read.width, read.height), (width, height));
         assert_eq!(bits(&read.pixels), bits(&pixels));
@@ -63,7 +69,7 @@ fn the_same_image_gives_the_same_bytes() {
     for name in ["a.exr", "a.png"] {
         let path = folder.path().join(name);
         let write = || {
-            image::write(&path, view, &metadata(), Display::default()).expect("writable");
+            image::write(&path, view, &[], &metadata(), Display::default()).expect("writable");
             fs::read(&path).expect("readable")
         };
         let first = write();
@@ -93,8 +99,14 @@ fn exr_says_what_it_is() {
     let folder = folder();
     let path = folder.path().join("a.exr");
     let pixels = picture(4, 4);
-    image::write(&path, ImageView { width: 4, height: 4, pixels: &pixels }, &metadata(), Display::default())
-        .expect("writable");
+    image::write(
+        &path,
+        ImageView { width: 4, height: 4, pixels: &pixels },
+        &[],
+        &metadata(),
+        Display::default(),
+    )
+    .expect("writable");
     let bytes = fs::read(&path).expect("readable");
     assert_eq!(
         bytes[..8],
@@ -141,7 +153,8 @@ fn png_holds_what_the_formula_says() {
     let pixels = picture(width, height);
     for stops in [0.0, 1.5, -3.0] {
         let display = Display { exposure_stops: stops, tone: Tone::Clip };
-        image::write(&path, ImageView { width, height, pixels: &pixels }, &[], display).expect("writable");
+        image::write(&path, ImageView { width, height, pixels: &pixels }, &[], &[], display)
+            .expect("writable");
         let format = ::image::ImageFormat::Png;
         let read = ::image::load_from_memory_with_format(&fs::read(&path).expect("readable"), format);
         let read = read.expect("a PNG file").into_rgb8();
@@ -158,7 +171,7 @@ fn png_says_how_it_was_made() {
     let display = Display { exposure_stops: -0.5, tone: Tone::Neutral };
     let mut pairs = metadata();
     pairs.insert(0, ("seed".to_owned(), "replaced".to_owned()));
-    image::write(&path, ImageView { width: 1, height: 1, pixels: &[[0.5; 3]] }, &pairs, display)
+    image::write(&path, ImageView { width: 1, height: 1, pixels: &[[0.5; 3]] }, &[], &pairs, display)
         .expect("writable");
     let bytes = fs::read(&path).expect("readable");
     let reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().expect("a PNG file");
@@ -187,7 +200,7 @@ fn mistakes_are_named_and_leave_no_file() {
     let write = |name: &str, width, height, metadata: &[(String, String)]| {
         let path = folder.path().join(name);
         let view = ImageView { width, height, pixels: &one };
-        image::write(&path, view, metadata, Display::default()).expect_err("must fail").to_string()
+        image::write(&path, view, &[], metadata, Display::default()).expect_err("must fail").to_string()
     };
     let pair = |key: &str, value: &str| [(key.to_owned(), value.to_owned())];
     let cases = [
@@ -237,6 +250,7 @@ fn what_is_no_exr_is_refused() {
     image::write(
         &path,
         ImageView { width: 30, height: 30, pixels: &pixels },
+        &[],
         &metadata(),
         Display::default(),
     )

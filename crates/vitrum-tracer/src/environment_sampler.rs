@@ -52,8 +52,6 @@ struct Region {
 pub(crate) struct EnvironmentSampler {
     map: Arc<EnvironmentMap>,
     parts: Vec<Part>,
-    /// Whether the last part is the rest of the map.
-    has_rest: bool,
 }
 
 /// A direction that light is asked for from.
@@ -73,11 +71,10 @@ impl EnvironmentSampler {
         let mut parts: Vec<Part> = suns.iter().map(|sun| grid.part(*sun, &[], 0.0)).collect();
         let mean = if compensated { grid.mean_beside(&suns) } else { 0.0 };
         let rest = grid.part(grid.whole(), &suns, mean);
-        let has_rest = rest.power > 0.0;
-        if has_rest {
+        if rest.power > 0.0 {
             parts.push(rest);
         }
-        Self { map, parts, has_rest }
+        Self { map, parts }
     }
 
     /// How many parts there are.
@@ -85,12 +82,10 @@ impl EnvironmentSampler {
         self.parts.len()
     }
 
-    /// Roughly the irradiance that a part gives a surface that faces it.
+    /// Roughly the irradiance that a part gives: what it would be if all of it came from one direction.
     #[inline]
     pub(crate) fn irradiance(&self, part: usize) -> f64 {
-        let is_rest = self.has_rest && part + 1 == self.parts.len();
-        // Of what comes from everywhere half is behind the surface, and the rest meets it at half its cosine on average.
-        self.parts[part].power * if is_rest { 0.25 } else { 1.0 }
+        self.parts[part].power
     }
 
     /// A direction of a part for a point of the unit square; `None` on the edge of what is dark.
@@ -320,4 +315,178 @@ impl Grid {
 fn overlap(a: Region, b: Region, around: usize) -> bool {
     let bands = a.band < b.band + b.bands && b.band < a.band + a.bands;
     bands && (b.column..b.column + b.columns).any(|column| a.contains([column % around, a.band], around))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+    use vitrum_math::{NodeKey, Purpose, SampleAddress};
+
+    /// A sky that is bright above and dim below, with suns of radius `radius` at the given azimuths, 0.6 above the horizon.
+    fn sky(width: usize, suns: &[f64], radius: f64) -> EnvironmentMap {
+        let height = width / 2;
+        let towards = |azimuth: f64| {
+            let (sin, cos) = libm::sincos(azimuth);
+            DVec3::new(libm::cos(0.6) * sin, libm::sin(0.6), -libm::cos(0.6) * cos)
+        };
+        let texel = |at: usize| {
+            let phi = TAU * (((at % width) as f64 + 0.5) / width as f64 - 0.5);
+            let theta = PI * ((at / width) as f64 + 0.5) / height as f64;
+            let direction = DVec3::new(
+                libm::sin(theta) * libm::sin(phi),
+                libm::cos(theta),
+                -libm::sin(theta) * libm::cos(phi),
+            );
+            let is_sun = suns.iter().any(|s| towards(*s).dot(direction) > libm::cos(radius));
+            let light = if is_sun { 5000.0 } else { 0.2 + 0.3 * (direction.y + 1.0) };
+            [light as f32, light as f32, 0.5 * light as f32]
+        };
+        EnvironmentMap::new(width, height, (0..width * height).map(texel).collect(), 0.4, 1.5).expect("valid")
+    }
+
+    fn points(count: u32) -> impl Iterator<Item = [f64; 2]> {
+        (0..count).map(|i| SampleAddress::new(3, 0, 0, i).pair(NodeKey::ROOT, Purpose::LightPoint))
+    }
+
+    /// Uniformly over all directions.
+    fn directions(count: u32) -> impl Iterator<Item = DVec3> {
+        points(count).map(|[u, v]| {
+            let z = 1.0 - 2.0 * u;
+            let r = (1.0 - z * z).max(0.0).sqrt();
+            let (sin, cos) = libm::sincos(TAU * v);
+            DVec3::new(r * cos, z, r * sin)
+        })
+    }
+
+    fn maps() -> Vec<EnvironmentMap> {
+        vec![
+            sky(64, &[], 0.0),
+            sky(256, &[0.5], 0.02),
+            sky(256, &[-PI + 0.41, 2.0], 0.03),
+            EnvironmentMap::new(1, 1, vec![[1.0, 2.0, 3.0]], 0.0, 1.0).expect("valid"),
+            EnvironmentMap::new(
+                3,
+                2,
+                vec![[0.0; 3], [4.0; 3], [0.0; 3], [0.0; 3], [0.0; 3], [1.0; 3]],
+                0.0,
+                1.0,
+            )
+            .expect("valid"),
+        ]
+    }
+
+    /// What is sampled has the density that the direction is said to have, in the same part.
+    #[test]
+    fn samples_have_their_density() {
+        for map in maps() {
+            for compensated in [false, true] {
+                let sampler = EnvironmentSampler::new(Arc::new(map.clone()), compensated);
+                for part in 0..sampler.len() {
+                    for point in points(4096) {
+                        let asked = sampler.sample(part, point).expect("there is light everywhere asked for");
+                        assert!((asked.towards.length() - 1.0).abs() < 1e-14);
+                        let (found, pdf) = sampler.pdf(asked.towards).expect("it was sampled");
+                        // Rounding may put a direction from the edge of a cell into its neighbour.
+                        if found == part && (pdf / asked.pdf - 1.0).abs() > 1e-9 {
+                            let near = points(9).any(|[u, v]| {
+                                let by = DVec3::new(u - 0.5, v - 0.5, 0.5 - u) * 1e-12;
+                                sampler
+                                    .pdf(asked.towards + by)
+                                    .is_some_and(|(_, p)| (p / asked.pdf - 1.0).abs() < 1e-9)
+                            });
+                            assert!(near, "{pdf} instead of {}", asked.pdf);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// The density integrates to one over the directions of each part.
+    #[test]
+    fn densities_integrate_to_one() {
+        for map in maps() {
+            let sampler = EnvironmentSampler::new(Arc::new(map), false);
+            let mut sums = vec![0.0; sampler.len()];
+            let count = 1 << 20;
+            for direction in directions(count) {
+                if let Some((part, pdf)) = sampler.pdf(direction) {
+                    sums[part] += pdf * 4.0 * PI / f64::from(count);
+                }
+            }
+            for (part, sum) in sums.iter().enumerate() {
+                // A sun fills a thousandth of the sphere: a thousand of these directions, which are stratified.
+                let is_sun = part + 1 < sums.len();
+                assert!((sum - 1.0).abs() < if is_sun { 0.02 } else { 2e-3 }, "part {part}: {sum}");
+            }
+        }
+    }
+
+    /// All parts together give the light that arrives from everywhere, summed over the texels.
+    #[test]
+    fn parts_hold_all_light() {
+        for map in maps() {
+            let grid = Grid::new(&map);
+            let (all, solid_angle) = grid.sum(grid.whole());
+            assert!((solid_angle - 4.0 * PI).abs() < 1e-9);
+            let sampler = EnvironmentSampler::new(Arc::new(map), false);
+            let count = 1 << 14;
+            let estimate: f64 = (0..sampler.len())
+                .flat_map(|part| points(count).map(move |point| (part, point)))
+                .map(|(part, point)| {
+                    let asked = sampler.sample(part, point).expect("light");
+                    asked.radiance.element_sum() / 3.0 / asked.pdf / f64::from(count)
+                })
+                .sum();
+            assert!((estimate / all - 1.0).abs() < 2e-3, "{estimate} instead of {all}");
+        }
+    }
+
+    /// Suns are found where they are, at the seam too, with the irradiance of their disk; a lamp of twenty degrees is none.
+    #[test]
+    fn suns_are_found() {
+        let expected = |radius: f64| 1.5 * 5000.0 * (2.5 / 3.0) * TAU * (1.0 - libm::cos(radius));
+        // A rotation of 0.4 counterclockwise takes an azimuth of a to a - 0.4.
+        for (azimuth, radius) in [(0.5, 0.02), (-PI + 0.001, 0.02), (PI - 0.01, 0.03)] {
+            let suns = sky(512, &[azimuth], radius).suns();
+            let [sun] = suns[..] else { panic!("found {suns:?}") };
+            let azimuth = azimuth - 0.4;
+            let towards = DVec3::new(
+                libm::cos(0.6) * libm::sin(azimuth),
+                libm::sin(0.6),
+                -libm::cos(0.6) * libm::cos(azimuth),
+            );
+            assert!(sun.towards.dot(towards) > libm::cos(0.01), "{sun:?} instead of {towards}");
+            // Texels are in the disk or not: its edge is a texel, 0.012 wide, rough.
+            assert!((sun.irradiance / expected(radius) - 1.0).abs() < 0.25, "{sun:?}");
+        }
+        assert_eq!(sky(512, &[0.5, 2.0, -2.0], 0.02).suns().len(), 3);
+        assert_eq!(sky(512, &[0.5], 0.35).suns(), []);
+        assert_eq!(sky(512, &[], 0.0).suns(), []);
+    }
+
+    /// A sun straight up is a row around all of the map.
+    #[test]
+    fn a_sun_at_the_zenith_is_one_sun() {
+        let (width, height) = (256, 128);
+        let texel = |at: usize| if at / width == 0 { [1e5; 3] } else { [0.1; 3] };
+        let map = EnvironmentMap::new(width, height, (0..width * height).map(texel).collect(), 0.0, 1.0);
+        let suns = map.expect("valid").suns();
+        assert_eq!(suns.len(), 1);
+        // Its half of the band of interpolation below belongs to it.
+        assert!(suns[0].share > 0.9, "{suns:?}");
+    }
+
+    #[test]
+    fn what_is_the_same_everywhere_or_dark_is_not_asked_for() {
+        let of =
+            |texel: [f32; 3]| Arc::new(EnvironmentMap::new(8, 4, vec![texel; 32], 0.0, 1.0).expect("valid"));
+        assert_eq!(EnvironmentSampler::new(of([0.5; 3]), true).len(), 0);
+        assert_eq!(EnvironmentSampler::new(of([0.0; 3]), false).len(), 0);
+        let even = EnvironmentSampler::new(of([0.5; 3]), false);
+        assert_eq!(even.len(), 1);
+        let (_, pdf) = even.pdf(DVec3::new(0.0, libm::cos(FRAC_PI_2), -1.0)).expect("a part");
+        assert!((pdf * 4.0 * PI - 1.0).abs() < 1e-6, "uniform, but for the rounding of the sums");
+    }
 }

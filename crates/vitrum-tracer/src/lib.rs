@@ -1,7 +1,8 @@
 //! From a resolved scene to radiance on a film.
 //!
 //! Knows no files, clocks, environment variables or terminals. Read in this order: [`Scene`] (immutable, everything
-//! resolved), [`Plan`] (what the scene needs, and what it can skip), [`render`] (tiles, samples, film), `walker` (the ray
+//! resolved), [`Plan`] (what the scene needs, and what it can skip), [`render`] (tiles, samples, film), `schedule` (what is sampled
+//! next), `walker` (the ray
 //! tree: the hot loop), `whitted` and `path` (what happens at a hit).
 //!
 //! Threads never change the image: every random number is a function of its address, every pixel is summed in a fixed
@@ -19,6 +20,7 @@ mod path;
 mod plan;
 mod render;
 mod scene;
+mod schedule;
 mod settings;
 mod stats;
 mod walker;
@@ -28,10 +30,10 @@ pub use background::Background;
 pub use camera::{Camera, CameraError, Projection};
 pub use environment::{EnvironmentError, EnvironmentMap};
 pub use environment_sampler::Sun;
-pub use film::Film;
+pub use film::{Buffer, ErrorEstimate, Film, FilmError, Pixel};
 pub use light::{Falloff, Light};
 pub use plan::Plan;
-pub use render::{Progress, RenderError, Rendering, on_threads, render};
+pub use render::{Ended, Progress, RenderError, Rendering, on_threads, render, resume};
 pub use scene::{Scene, SceneError, SceneObject};
-pub use settings::{Branching, Crop, Integrator, LightSampling, Settings, ShadowMode};
+pub use settings::{Branching, Crop, Integrator, LightSampling, Settings, ShadowMode, Target};
 pub use stats::{Dropped, GivenUp, Stats};

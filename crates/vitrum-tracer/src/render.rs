@@ -1,17 +1,20 @@
 //! Tiles, samples and threads.
 
-use crate::film::{Film, Pixel, PixelSum, rounds};
+use crate::film::{Buffer, Film, Pixel, PixelSum};
 use crate::light_sampler::LightSampler;
 use crate::path::Path;
 use crate::plan::Plan;
 use crate::scene::Scene;
-use crate::settings::{Crop, Integrator, Settings};
+use crate::schedule::Schedule;
+use crate::settings::{Crop, Integrator, Settings, Target};
 use crate::stats::{Dropped, Stats};
 use crate::walker::{Policy, Walker};
 use crate::whitted::Whitted;
 use rayon::prelude::*;
-use std::ops::Range;
 use vitrum_math::{NodeKey, Purpose, Rgb, SampleAddress};
+
+/// What the seed of the second buffer is farther on: any large odd number will do, that nobody counts up to.
+const OTHER_BUFFER: u64 = 0x9e6c_63d0_876a_9a35;
 
 /// Whoever watches a render. Asked from many threads.
 pub trait Progress: Sync {
@@ -21,6 +24,27 @@ pub trait Progress: Sync {
     fn is_stopped(&self) -> bool {
         false
     }
+    /// A round of so many samples begins.
+    fn plan(&self, _samples: u64) {}
+    /// A round is done. What is kept of the film now is enough to go on from here.
+    fn keep(&self, _film: &Film) {}
+    /// Seconds until the picture should be done, where time is limited. Asked between rounds: the one in hand is ended.
+    fn seconds_left(&self) -> Option<f64> {
+        None
+    }
+}
+
+/// Why a render ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ended {
+    /// All samples were taken.
+    Samples,
+    /// The error to reach was reached.
+    Error,
+    /// There is no time for another round.
+    Time,
+    /// It was stopped.
+    Stopped,
 }
 
 /// Nobody watches.
@@ -37,12 +61,12 @@ pub struct Rendering {
     pub stats: Stats,
     /// What the scene needed.
     pub plan: Plan,
-    /// True when all samples were taken; false when the render was stopped.
-    pub complete: bool,
+    /// Why it ended.
+    pub ended: Ended,
 }
 
 /// Settings that make no picture.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
     /// An image without pixels, or with more than 2²⁸.
@@ -56,6 +80,12 @@ pub enum RenderError {
     /// A part that is empty or not inside the image.
     #[error("the crop of {width} × {height} pixels at ({x}, {y}) is not inside the image", x = .0.x, y = .0.y, width = .0.width, height = .0.height)]
     Crop(Crop),
+    /// An error to reach that is not a number above 0.
+    #[error("an error of {0} can't be reached: ask for one above 0")]
+    Target(f64),
+    /// A film that was begun with other settings.
+    #[error("the film to go on with is not of this size, or not of this kind of rounds")]
+    OtherFilm,
     /// Threads could not be started.
     #[error("could not start threads: {0}")]
     Threads(String),
@@ -80,42 +110,70 @@ pub fn on_threads<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> R
 /// [`RenderError`] for settings that make no picture.
 pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Result<Rendering, RenderError> {
     check(settings)?;
-    on_threads(settings.threads, || render_here(scene, settings, progress))
+    let film = Film::new(settings.area(), buffers(settings));
+    on_threads(settings.threads, || render_here(scene, settings, film, progress))
+}
+
+/// Goes on with a film that was stopped: with the same scene and settings the picture is, to the last bit, the one that it would
+/// have become. Counts of rays begin anew.
+///
+/// # Errors
+/// [`RenderError`] for settings that make no picture, or not the film's.
+pub fn resume(
+    scene: &Scene,
+    settings: &Settings,
+    film: Film,
+    progress: &dyn Progress,
+) -> Result<Rendering, RenderError> {
+    check(settings)?;
+    if film.area() != settings.area() || film.buffers().len() != buffers(settings) {
+        return Err(RenderError::OtherFilm);
+    }
+    on_threads(settings.threads, || render_here(scene, settings, film, progress))
+}
+
+fn buffers(settings: &Settings) -> usize {
+    if settings.until.is_some() { 2 } else { 1 }
 }
 
 /// Renders on the threads of the pool that it is called in, or on the calling one.
-fn render_here(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Rendering {
+fn render_here(scene: &Scene, settings: &Settings, mut film: Film, progress: &dyn Progress) -> Rendering {
     let lights = LightSampler::of(scene, settings);
     let plan = Plan::with_lights(scene, settings, &lights);
-    let mut film = Film::new(settings.area());
     let mut stats = Stats::default();
     let tiles = tiles(settings);
-    for samples in rounds(settings.spp) {
-        let work = |tile: &Crop| {
+    let work: Vec<(usize, Crop)> =
+        (0..film.buffers().len()).flat_map(|buffer| tiles.iter().map(move |tile| (buffer, *tile))).collect();
+    let mut schedule = Schedule::new(settings);
+    loop {
+        if let Err(ended) = schedule.next(&mut film, progress) {
+            return Rendering { film, stats, plan, ended };
+        }
+        let render = |(buffer, tile): &(usize, Crop)| {
             let what = (scene, &lights, settings, &plan);
             let done = match settings.integrator {
-                Integrator::Whitted => render_tile::<Whitted>(what, *tile, samples.clone(), progress),
-                Integrator::Path => render_tile::<Path>(what, *tile, samples.clone(), progress),
+                Integrator::Whitted => render_tile::<Whitted>(what, &film, *buffer, *tile, progress),
+                Integrator::Path => render_tile::<Path>(what, &film, *buffer, *tile, progress),
             }?;
             progress.advance(done.1.samples, done.1.rays());
             Some(done)
         };
         let done: Vec<_> = if settings.threads == 1 {
-            tiles.iter().map(work).collect()
+            work.iter().map(render).collect()
         } else {
-            tiles.par_iter().map(work).collect()
+            work.par_iter().map(render).collect()
         };
-        for (tile, (pixels, tile_stats)) in
-            tiles.iter().zip(&done).filter_map(|(t, d)| Some((t, d.as_ref()?)))
+        for ((buffer, tile), (pixels, tile_stats)) in
+            work.iter().zip(&done).filter_map(|(t, d)| Some((t, d.as_ref()?)))
         {
-            film.add(*tile, pixels);
+            film.add(*buffer, *tile, pixels);
             stats.merge(tile_stats);
         }
         if done.iter().any(Option::is_none) {
-            return Rendering { film, stats, plan, complete: false };
+            return Rendering { film, stats, plan, ended: Ended::Stopped };
         }
+        progress.keep(&film);
     }
-    Rendering { film, stats, plan, complete: true }
 }
 
 fn check(settings: &Settings) -> Result<(), RenderError> {
@@ -125,6 +183,11 @@ fn check(settings: &Settings) -> Result<(), RenderError> {
     }
     if settings.spp == 0 {
         return Err(RenderError::NoSamples);
+    }
+    if let Some(Target::RelMse(limit) | Target::Noise(limit)) = settings.until
+        && !(limit > 0.0 && limit.is_finite())
+    {
+        return Err(RenderError::Target(limit));
     }
     let area = settings.area();
     let inside = |start: u32, length: u32, whole: u32| {
@@ -149,24 +212,29 @@ fn tiles(settings: &Settings) -> Vec<Crop> {
         .collect()
 }
 
-/// The sums of a range of samples over a tile, row by row; `None` when the render is to stop before the tile is done.
+/// What the present round brings to the pixels of a tile, row by row; `None` when the render is to stop before the tile is done.
 fn render_tile<P: Policy>(
     (scene, lights, settings, plan): (&Scene, &LightSampler, &Settings, &Plan),
+    film: &Film,
+    buffer: usize,
     tile: Crop,
-    samples: Range<u32>,
     progress: &dyn Progress,
 ) -> Option<(Vec<Pixel>, Stats)> {
     let mut walker = Walker::<P>::new(scene, lights, settings, plan);
     let mut pixels = Vec::with_capacity(tile.width as usize * tile.height as usize);
     let mut sum = PixelSum::default();
+    let seed = settings.seed.wrapping_add(buffer as u64 * OTHER_BUFFER);
+    let Buffer { goals, pixels: before } = &film.buffers()[buffer];
     for y in tile.y..tile.y + tile.height {
         for x in tile.x..tile.x + tile.width {
             sum.clear();
-            for sample in samples.clone() {
+            let (from, to) = (before[film.place(x, y)].taken, goals[film.square(x, y)]);
+            let rays = walker.stats.rays();
+            for sample in from..to {
                 if progress.is_stopped() {
                     return None;
                 }
-                let address = SampleAddress::new(settings.seed, x, y, sample).of_sequence(settings.sequence);
+                let address = SampleAddress::new(seed, x, y, sample).of_sequence(settings.sequence);
                 let [dx, dy] = address.pair(NodeKey::ROOT, Purpose::Film);
                 let lens = || address.pair(NodeKey::ROOT, Purpose::Lens);
                 let ray = scene.camera.ray(f64::from(x) + dx, f64::from(y) + dy, settings.size, lens);
@@ -179,12 +247,15 @@ fn render_tile<P: Policy>(
                 sum.push(rounded);
                 sum.given_up += walker.given_up;
             }
-            walker.stats.samples += samples.len() as u64;
+            walker.stats.samples += u64::from(to - from);
             pixels.push(Pixel {
-                sum: sum.total(),
+                before: Rgb::ZERO,
+                last: sum.total(),
                 taken: sum.taken,
                 counted: sum.counted,
+                last_counted: sum.counted,
                 given_up: sum.given_up,
+                rays: walker.stats.rays() - rays,
             });
         }
     }

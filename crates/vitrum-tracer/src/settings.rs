@@ -48,6 +48,16 @@ pub enum ShadowMode {
     Straight,
 }
 
+/// An error of the picture that is enough. Reaching it takes two buffers of independent samples, which decide for each other
+/// where more are needed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Target {
+    /// The mean over channels and pixels of squared error over squared radiance plus 0.01.
+    RelMse(f64),
+    /// The root of that, in every square of 8 x 8 pixels.
+    Noise(f64),
+}
+
 /// A part of the image, in pixels from its upper left corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Crop {
@@ -68,8 +78,10 @@ pub struct Settings {
     pub size: [u32; 2],
     /// The part that is rendered; its pixels are the same bytes as in the whole image.
     pub crop: Option<Crop>,
-    /// Samples per pixel.
+    /// Samples per pixel; with an error to reach, the most that a pixel may get.
     pub spp: u32,
+    /// The error to reach; none takes the samples as they are, the same number in each pixel.
+    pub until: Option<Target>,
     /// A ray deeper than this is not traced; the camera ray has depth 0. None: see [`deepest`](Self::deepest).
     pub max_depth: Option<u32>,
     /// How light is followed.
@@ -102,6 +114,7 @@ impl Default for Settings {
             size: [640, 480],
             crop: None,
             spp: 16,
+            until: None,
             max_depth: None,
             integrator: Integrator::Whitted,
             branching: Branching::Tree,

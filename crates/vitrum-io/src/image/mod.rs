@@ -31,6 +31,15 @@ pub struct ImageView<'a> {
     pub pixels: &'a [[f32; 3]],
 }
 
+/// Numbers of each pixel beside radiance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// Its name, as OpenEXR has them: the part before the last dot is a layer's.
+    pub name: String,
+    /// In rows from the top, each from the left: width × height values.
+    pub values: Vec<f32>,
+}
+
 /// A picture that was read from a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImageRgb {
@@ -57,8 +66,8 @@ enum Format {
     Png,
 }
 
-/// Writes an image, in the format that the extension of its name says. `metadata` are pairs of key and value; of equal
-/// keys the last counts. `display` is for PNG alone.
+/// Writes an image, in the format that the extension of its name says. `channels` are for OpenEXR alone, `display` is for PNG
+/// alone. `metadata` are pairs of key and value; of equal keys the last counts.
 ///
 /// # Errors
 /// When the extension is not known, the image has no pixels or not the number that its size says, the metadata cannot
@@ -66,22 +75,32 @@ enum Format {
 pub fn write(
     path: &Path,
     image: ImageView<'_>,
+    channels: &[Channel],
     metadata: &[(String, String)],
     display: Display,
 ) -> Result<(), ImageError> {
     let format = format_of(path)?;
     check_image(image)?;
+    if let Some(channel) = channels.iter().find(|channel| channel.values.len() != image.pixels.len()) {
+        let pixels = channel.values.len();
+        return Err(ImageError::Size { width: image.width, height: image.height, pixels });
+    }
     let metadata = last_of_equal_keys(metadata)?;
     let encode_error = |message| ImageError::Encode { path: path.to_owned(), message };
     let bytes = match format {
         Format::OpenExr => {
-            openexr::encode(image, &metadata).map_err(|error| encode_error(error.to_string()))?
+            openexr::encode(image, channels, &metadata).map_err(|error| encode_error(error.to_string()))?
         }
         Format::Png => {
             png::encode(image, &metadata, display).map_err(|error| encode_error(error.to_string()))?
         }
     };
     Ok(atomic::replace(path, |file| file.write_all(&bytes))?)
+}
+
+/// Whether a file of this name holds channels beside radiance.
+pub fn holds_channels(path: &Path) -> bool {
+    matches!(format_of(path), Ok(Format::OpenExr))
 }
 
 /// Whether an image can be written under this name: for finding out before the rendering rather than after it.

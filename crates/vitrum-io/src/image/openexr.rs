@@ -1,6 +1,6 @@
 //! OpenEXR for further work: linear float32, nothing lost.
 //!
-//! One layer of R, G and B, scanlines from top to bottom, ZIP compression (16 lines at a time), chromaticities of
+//! One layer of R, G and B, and of whatever channels are asked for beside them, scanlines from top to bottom, ZIP compression (16 lines at a time), chromaticities of
 //! Rec.709 with white D65, metadata as text attributes. The same image gives the same bytes: the library keeps
 //! attributes in a hash map of random order, so the header is sorted by name afterwards, as the format's own library
 //! has it.
@@ -9,13 +9,14 @@ use std::fs::File;
 use std::io::{BufReader, Cursor};
 use std::path::Path;
 
+use ::exr::image::write::layers::WritableLayers;
 use ::exr::meta::attribute::{AttributeValue, Chromaticities, Compression, LineOrder, Text};
 use ::exr::prelude::{
-    Encoding, Image, Layer, LayerAttributes, MetaData, ReadChannels, ReadLayers, SpecificChannels, Vec2,
-    WritableImage,
+    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, ImageAttributes, Layer, LayerAttributes, MetaData,
+    ReadChannels, ReadLayers, SpecificChannels, Vec2, WritableImage,
 };
 
-use super::{ImageError, ImageRgb, ImageView};
+use super::{Channel, ImageError, ImageRgb, ImageView};
 
 /// Images with more pixels are not read: a few damaged bytes must not take all memory.
 const MOST_PIXELS: usize = 1 << 28;
@@ -29,28 +30,55 @@ const REC709: Chromaticities = Chromaticities {
 };
 
 /// The bytes of an EXR file. Keys and values were checked before.
-pub(super) fn encode(image: ImageView<'_>, metadata: &[(String, String)]) -> ::exr::error::Result<Vec<u8>> {
+pub(super) fn encode(
+    image: ImageView<'_>,
+    channels: &[Channel],
+    metadata: &[(String, String)],
+) -> ::exr::error::Result<Vec<u8>> {
     let width = image.width as usize;
-    let pixel = |at: Vec2<usize>| {
-        let [r, g, b] = image.pixels[at.y() * width + at.x()];
-        (r, g, b)
-    };
     let encoding = Encoding {
         compression: Compression::ZIP16,
         blocks: ::exr::image::Blocks::ScanLines,
         line_order: LineOrder::Increasing,
     };
     let size = Vec2(width, image.height as usize);
-    let layer = Layer::new(size, LayerAttributes::default(), encoding, SpecificChannels::rgb(pixel));
-    let mut file = Image::from_layer(layer);
-    file.attributes.chromaticities = Some(REC709);
-    file.attributes.other = metadata
+    if channels.is_empty() {
+        let pixel = |at: Vec2<usize>| {
+            let [r, g, b] = image.pixels[at.y() * width + at.x()];
+            (r, g, b)
+        };
+        let layer = Layer::new(size, LayerAttributes::default(), encoding, SpecificChannels::rgb(pixel));
+        let mut file = Image::from_layer(layer);
+        describe(&mut file.attributes, metadata);
+        return bytes_of(&file);
+    }
+    let of_image = |name: &str, c: usize| {
+        AnyChannel::new(name, FlatSamples::F32(image.pixels.iter().map(|pixel| pixel[c]).collect()))
+    };
+    let mut all: Vec<_> = ["R", "G", "B"].iter().enumerate().map(|(c, name)| of_image(name, c)).collect();
+    all.extend(
+        channels
+            .iter()
+            .map(|channel| AnyChannel::new(channel.name.as_str(), FlatSamples::F32(channel.values.clone()))),
+    );
+    let all = AnyChannels::sort(all.into_iter().collect());
+    let mut file = Image::from_layer(Layer::new(size, LayerAttributes::default(), encoding, all));
+    describe(&mut file.attributes, metadata);
+    bytes_of(&file)
+}
+
+fn describe(attributes: &mut ImageAttributes, metadata: &[(String, String)]) {
+    attributes.chromaticities = Some(REC709);
+    attributes.other = metadata
         .iter()
         .map(|(key, value)| {
             let text = |text: &str| Text::from_slice_unchecked(text.as_bytes());
             (text(&super::stored_key(key)), AttributeValue::Text(text(value)))
         })
         .collect();
+}
+
+fn bytes_of<'l, L: WritableLayers<'l>>(file: &'l Image<L>) -> ::exr::error::Result<Vec<u8>> {
     let mut bytes = Cursor::new(Vec::new());
     file.write().non_parallel().to_buffered(&mut bytes)?;
     sort_attributes(bytes.get_mut()).ok_or(::exr::error::Error::Invalid("header".into()))?;

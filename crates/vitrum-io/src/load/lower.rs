@@ -2,7 +2,8 @@
 
 use super::matter::Matter;
 use super::meshes::{MeshReport, Meshes};
-use super::naming::{self, Names};
+use super::naming::{self, Names, fnv1a};
+use super::origin::Origin;
 use super::{LoadError, Loaded, SceneOptions, environment, error};
 use crate::diagnostic::{Diagnostic, Diagnostics, Source};
 use crate::image::{Display, Tone};
@@ -74,6 +75,14 @@ pub(super) fn lower(
     }
     let camera = lowering.camera();
     let background = background(&desc.background, source, folder, options, &mut lowering.problems);
+    let mut origin = Origin { hashes: vec![fnv1a(format!("{desc:?}").as_bytes())], files: Vec::new() };
+    for (file, materials) in lowering.meshes.read() {
+        origin.files.push(file.clone());
+        origin.hashes.push(*materials);
+    }
+    if let scene::Background::Image { file, .. } = &desc.background {
+        origin.files.push(folder.join(file));
+    }
     let Lowering { matter, mut problems, objects, reports, .. } = lowering;
     let scene = camera.filter(|_| !problems.has_errors()).map(|camera| Scene::new(objects, camera));
     match scene {
@@ -89,6 +98,7 @@ pub(super) fn lower(
                 display: display(&desc.output),
                 meshes: reports,
                 media: matter.media(),
+                origin,
                 warnings: problems,
             })
         }

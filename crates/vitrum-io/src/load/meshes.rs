@@ -1,5 +1,6 @@
 //! Mesh files: read once, mended where that needs no guess, and examined.
 
+use super::naming::fnv1a;
 use crate::obj::{self, MtlMaterial, ObjError, ObjFile, Part};
 use crate::scene::Normals;
 use std::borrow::Cow;
@@ -51,6 +52,8 @@ type Wanted = (PathBuf, u8, u8, Option<String>);
 pub(super) struct Meshes {
     /// Each with whether its warnings are still to be told.
     files: BTreeMap<PathBuf, (ObjFile, bool)>,
+    /// What has been read, with a hash of its materials.
+    read: Vec<(PathBuf, u64)>,
     /// What is still to be prepared.
     announced: BTreeSet<Wanted>,
     prepared: BTreeMap<Wanted, Result<Vec<Prepared>, PrepareError>>,
@@ -89,7 +92,13 @@ impl PrepareError {
 impl Meshes {
     /// With a file that has been read already.
     pub(super) fn holding(path: &Path, file: ObjFile) -> Self {
-        Self { files: BTreeMap::from([(path.to_owned(), (file, true))]), ..Self::default() }
+        let read = vec![(path.to_owned(), hash_of_materials(&file))];
+        Self { files: BTreeMap::from([(path.to_owned(), (file, true))]), read, ..Self::default() }
+    }
+
+    /// The files that were read, each with a hash of its materials, which may come from other files.
+    pub(super) fn read(&self) -> &[(PathBuf, u64)] {
+        &self.read
     }
 
     /// Says that [`prepare`](Self::prepare) is going to be asked for this.
@@ -125,7 +134,9 @@ impl Meshes {
         warn: &mut impl FnMut(&str),
     ) -> Result<Vec<Prepared>, PrepareError> {
         if !self.files.contains_key(path) {
-            self.files.insert(path.to_owned(), (obj::read(path)?, true));
+            let file = obj::read(path)?;
+            self.read.push((path.to_owned(), hash_of_materials(&file)));
+            self.files.insert(path.to_owned(), (file, true));
         }
         if let Some((file, is_new)) = self.files.get_mut(path)
             && std::mem::take(is_new)
@@ -148,6 +159,10 @@ impl Meshes {
             parts.into_iter().map(|part| prepare(path, part, &materials, normals, build)).collect();
         prepared.map_err(|reason| PrepareError::Mesh { path: path.to_owned(), reason })
     }
+}
+
+fn hash_of_materials(file: &ObjFile) -> u64 {
+    fnv1a(format!("{:?}", file.materials).as_bytes())
 }
 
 fn wanted(path: &Path, normals: Normals, build: Build, group: Option<&str>) -> Wanted {

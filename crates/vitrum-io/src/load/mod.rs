@@ -13,10 +13,13 @@ mod matter;
 mod meshes;
 mod model;
 mod naming;
+mod origin;
 
 pub use meshes::MeshReport;
 use meshes::Meshes;
 pub use model::{ModelMaterial, ModelOptions};
+pub(crate) use naming::fnv1a;
+pub use origin::Origin;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Source};
 use crate::image::Display;
@@ -40,6 +43,8 @@ pub struct Loaded {
     pub meshes: Vec<MeshReport>,
     /// Names and absolute indices of the media that the scene declares or uses.
     pub media: Vec<(String, f64)>,
+    /// What it was made of.
+    pub origin: Origin,
     /// Warnings.
     pub warnings: Diagnostics,
 }

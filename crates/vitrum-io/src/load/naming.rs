@@ -47,7 +47,7 @@ pub(super) fn of_parts(base: &str, parts: &[&str]) -> Vec<String> {
 }
 
 /// The 64-bit hash of G. Fowler, L. C. Noll and K.-P. Vo, variant 1a: the same on every machine.
-fn fnv1a(bytes: &[u8]) -> u64 {
+pub(crate) fn fnv1a(bytes: &[u8]) -> u64 {
     bytes
         .iter()
         .fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
