@@ -12,7 +12,7 @@ pub(crate) fn transmit(scene: &Scene, ray: Ray, crossings: usize) -> Option<Ray>
     for _ in 0..crossings {
         let hit = scene.aggregate().closest(&query, &mut Counters::default())?;
         let surface = scene.aggregate().interaction(&query, &hit);
-        let scattering = scene.material(hit.object, hit.face).scattering(surface.point);
+        let scattering = scene.scattering(&hit, surface.point);
         let frame = Frame::around(surface.ns);
         let child = scattering.split(frame.to_local(surface.wo), TransportMode::Radiance).transmitted?;
         query = surface.leave(frame.to_world(child.wi), THROUGH);

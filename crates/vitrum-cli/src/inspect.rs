@@ -154,7 +154,7 @@ fn plan(out: &mut String, plan: &Plan, loaded: &Loaded, integrator: Integrator) 
             count(plan.environment_lights, "part")
         ),
     };
-    let rows: [(&str, bool, String); 14] = [
+    let rows: [(&str, bool, String); 15] = [
         ("lights", plan.lights > 0, asked),
         ("shadow rays", plan.shadow_lights > 0, format!("towards {}", count(plan.shadow_lights, "light"))),
         ("ambient", plan.ambient, "added at each hit".to_owned()),
@@ -164,6 +164,7 @@ fn plan(out: &mut String, plan: &Plan, loaded: &Loaded, integrator: Integrator) 
         ("rough glass, metal", plan.rough, "scattered rays".to_owned()),
         ("mirrors", plan.mirrors, "reflected rays".to_owned()),
         ("textures", plan.textures, "looked up at each hit".to_owned()),
+        ("images", plan.images, "texture coordinates where one is seen".to_owned()),
         ("meshes", plan.meshes > 0, count(plan.meshes, "mesh tree")),
         ("smooth normals", plan.smooth_normals, "interpolated at each hit".to_owned()),
         ("object tree", plan.object_tree, format!("over {}", count(objects, "object"))),
@@ -252,6 +253,10 @@ fn texture(texture: &Texture) -> String {
     match texture {
         Texture::Constant(c) => colour(*c),
         Texture::Checker(c) => format!("checker {} / {}, {} m", colour(c.even), colour(c.odd), c.size),
+        Texture::Image(texture) => {
+            let [width, height] = texture.image.size();
+            format!("image {} ({width} × {height})", texture.image.name())
+        }
     }
 }
 

@@ -11,7 +11,7 @@ use crate::wide::{
 };
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use vitrum_math::Bounds;
+use vitrum_math::{Bounds, DVec2, DVec3};
 
 /// Bounded objects are tried one by one while their costs sum to at most this; more stand in a tree. Measured: spheres, of
 /// which four are tried at a time, are worth sweeping up to about 24, others up to 2, with spheres beside them (`benches/README.md`).
@@ -357,6 +357,19 @@ impl Aggregate {
     pub fn interaction(&self, query: &Query, hit: &Hit) -> SurfaceInteraction {
         self.objects[hit.object as usize].interaction(query, hit)
     }
+
+    /// The texture coordinates of a hit, whose [point](Self::interaction) is given. For objects [with](Object::with_uvs) any.
+    // Never inlined: most scenes have no images, and must not carry this through their loop.
+    #[inline(never)]
+    pub fn uv(&self, hit: &Hit, point: DVec3) -> DVec2 {
+        self.objects[hit.object as usize].uv(hit.face, Some(hit.barycentrics), point)
+    }
+
+    /// The texture coordinates of a point that no ray has found: on a face of an object.
+    #[inline(never)]
+    pub fn uv_at(&self, object: u32, face: u32, point: DVec3) -> DVec2 {
+        self.objects[object as usize].uv(face, None, point)
+    }
 }
 
 #[cfg(test)]
@@ -364,7 +377,7 @@ mod tests {
     use super::*;
     use crate::interaction::Side;
     use crate::shape::{Shape, Sphere};
-    use vitrum_math::{DVec3, Ray, Transform};
+    use vitrum_math::{Ray, Transform};
 
     fn object(shape: Shape) -> Object {
         Object::new(shape, &Transform::IDENTITY, false).expect("valid")

@@ -28,6 +28,7 @@ mod object;
 pub mod shape;
 mod solids;
 mod spheres;
+mod uv;
 mod wide;
 
 pub use aggregate::{Aggregate, Counters, Hit};

@@ -6,7 +6,7 @@ use crate::interaction::SurfaceInteraction;
 use crate::mesh::{MeshPoint, TriangleMesh};
 use crate::shape::{Crossing, Plane, Rectangle, Shape, ShapeError, Sphere, SurfacePoint};
 use std::sync::Arc;
-use vitrum_math::{Bounds, Ray, Transform, unit};
+use vitrum_math::{Bounds, DVec2, DVec3, Ray, Transform, unit};
 
 /// A shape with its transform and orientation.
 #[derive(Clone, Debug)]
@@ -15,6 +15,8 @@ pub struct Object {
     /// `None` where the shape itself stands in world space.
     transform: Option<Transform>,
     flipped: bool,
+    /// What was described, where the shape took up its transform and texture coordinates are asked for.
+    described: Option<Box<(Shape, Transform)>>,
 }
 
 impl Object {
@@ -44,7 +46,18 @@ impl Object {
             }
             _ => (shape, Some(*t)),
         };
-        Ok(Self { shape, transform, flipped: flip })
+        Ok(Self { shape, transform, flipped: flip, described: None })
+    }
+
+    /// The same for an object whose material shows an image: it remembers what texture coordinates depend on.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new).
+    pub fn with_uvs(shape: Shape, transform: &Transform, flip: bool) -> Result<Self, ShapeError> {
+        let described = (shape.clone(), *transform);
+        let object = Self::new(shape, transform, flip)?;
+        let took_it_up = object.transform.is_none() && *transform != Transform::IDENTITY;
+        Ok(Self { described: took_it_up.then(|| Box::new(described)), ..object })
     }
 
     /// The shape.
@@ -220,6 +233,27 @@ impl Object {
         let front = wo.dot(ng) >= 0.0;
         let flipped = self.flipped;
         SurfaceInteraction { point, wo, ng, ns, front, object: hit.object, face: hit.face, flipped, error }
+    }
+
+    /// The texture coordinates of a hit at `point` in the world (see the module `uv`). `barycentrics` are those of the hit on a mesh;
+    /// without them, the point says where it is.
+    pub(crate) fn uv(&self, face: u32, barycentrics: Option<[f64; 2]>, point: DVec3) -> DVec2 {
+        let (shape, transform) = match &self.described {
+            Some(described) => (&described.0, Some(&described.1)),
+            None => (&self.shape, self.transform.as_ref()),
+        };
+        let own = || transform.map_or(point, |t| t.object_point(point));
+        match shape {
+            Shape::Sphere(s) => s.uv(own()),
+            Shape::Plane(s) => s.uv(own()),
+            Shape::Disk(s) => s.uv(own()),
+            Shape::Rectangle(s) => s.uv(own()),
+            Shape::Cuboid(s) => s.uv(own(), face),
+            Shape::Cylinder(s) => s.uv(own(), face),
+            Shape::Mesh(mesh) => {
+                mesh.uv(face, barycentrics.unwrap_or_else(|| mesh.barycentrics(face, own())))
+            }
+        }
     }
 
     /// Bound on the error, in units of the mesh's unit frame, of the origin of a ray that starts at a point of the mesh:

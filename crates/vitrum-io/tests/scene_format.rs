@@ -203,7 +203,7 @@ fn matter_and_light_arrive() {
         shadows: true,
     };
     assert_eq!(scene.lights[1].kind, lamp);
-    let Pattern::Checker { axes, size, .. } = scene.textures[0].pattern;
+    let Pattern::Checker { axes, size, .. } = scene.textures[0].pattern else { panic!("not a checker") };
     assert_eq!((axes, size), ([true; 3], 0.5));
     let Model::Transparent { phong, kr, kt, ior, outside } = &scene.materials[0].model else {
         panic!("{:?}", scene.materials[0])

@@ -5,12 +5,14 @@
 //! answer for everything else.
 
 mod absorption;
+mod image;
 mod index;
 mod material;
 mod scattering;
 mod texture;
 
 pub use absorption::{Absorption, InvalidAbsorption};
+pub use image::{Encoding, Filter, Image, ImageTexture, InvalidImage, Wrap, srgb_to_linear};
 pub use index::{IndexOfRefraction, InvalidIndex};
 pub use material::{Dielectric, Material, Media, Phong, Transparent};
 pub use scattering::Scattering;

@@ -1,15 +1,15 @@
 //! The closed family of materials.
 
 use crate::scattering::{Scattering, unless_zero};
-use crate::{Absorption, Texture};
+use crate::{Absorption, ImageTexture, Texture};
 use vitrum_bxdf::{
     Bxdf, Conductor, FresnelDielectric, Ggx, GlossySpecular, Interface, Lambertian, PerfectSpecular,
     PerfectTransmitter, RoughDielectric, ThinDielectric,
 };
-use vitrum_math::{DVec3, Rgb};
+use vitrum_math::{DVec2, DVec3, Rgb};
 
 /// What a surface is made of.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Material {
     /// Diffuse reflection: a Phong material without highlight.
     Matte(Phong),
@@ -44,7 +44,7 @@ pub enum Material {
 /// | `colour` | of the ambient and diffuse parts | 0 to 1 per channel |
 /// | `ka`, `kd` | ambient and diffuse coefficients; diffuse reflectance is kd · colour | 0 to 1 |
 /// | `ks`, `exponent` | highlight: f = ks cos^exponent around the mirror direction | ≥ 0, ≥ 1 |
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Phong {
     /// Colour of the ambient and diffuse parts.
     pub colour: Texture,
@@ -59,7 +59,7 @@ pub struct Phong {
 }
 
 /// Glass with constant coefficients, under a Phong part that shows that it is there.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Transparent {
     /// The Phong part.
     pub phong: Phong,
@@ -137,8 +137,8 @@ impl Phong {
         Self { colour: Texture::Constant(Rgb::ONE), ka: 0.0, kd: 0.0, ks: Rgb::ZERO, exponent: 1.0 };
 
     #[inline(always)]
-    fn scattering(&self, point: DVec3) -> Scattering {
-        let colour = if self.ka == 0.0 && self.kd == 0.0 { Rgb::ZERO } else { self.colour.at(point) };
+    fn scattering(&self, point: DVec3, uv: impl FnOnce() -> DVec2) -> Scattering {
+        let colour = if self.ka == 0.0 && self.kd == 0.0 { Rgb::ZERO } else { self.colour.at(point, uv) };
         let reflectance = colour * self.kd;
         let ks = self.ks;
         Scattering {
@@ -155,24 +155,26 @@ impl Phong {
 }
 
 impl Material {
-    /// The models at a point of the world.
+    /// The models at a point of the world, whose texture coordinates `uv` works out where an image needs them.
     // Always, because what it returns is large and would be copied.
     #[inline(always)]
-    pub fn scattering(&self, point: DVec3) -> Scattering {
+    pub fn scattering(&self, point: DVec3, uv: impl FnOnce() -> DVec2) -> Scattering {
         match self {
-            Self::Matte(phong) | Self::Phong(phong) => phong.scattering(point),
+            Self::Matte(phong) | Self::Phong(phong) => phong.scattering(point, uv),
             Self::Reflective { phong, kr } => Scattering {
                 body: unless_zero(*kr, Bxdf::PerfectSpecular(PerfectSpecular { kr: *kr })),
-                ..phong.scattering(point)
+                ..phong.scattering(point, uv)
             },
             Self::Transparent(t) => {
                 let glass = PerfectTransmitter { kr: t.kr, kt: t.kt, interface: t.interface };
-                Scattering { body: Some(Bxdf::PerfectTransmitter(glass)), ..t.phong.scattering(point) }
+                Scattering { body: Some(Bxdf::PerfectTransmitter(glass)), ..t.phong.scattering(point, uv) }
             }
             Self::Dielectric(glass) => Scattering::of(glass.bxdf),
             Self::Thin(sheet) => Scattering::of(Bxdf::ThinDielectric(*sheet)),
             Self::Conductor(metal) => Scattering::of(Bxdf::Conductor(*metal)),
-            Self::Emissive { radiance } => Scattering { emitted: radiance.at(point), ..Scattering::BLACK },
+            Self::Emissive { radiance } => {
+                Scattering { emitted: radiance.at(point, uv), ..Scattering::BLACK }
+            }
         }
     }
 
@@ -245,6 +247,19 @@ impl Material {
         }
     }
 
+    /// The texture that its points ask for a colour, where they ask for one.
+    pub fn texture(&self) -> Option<&Texture> {
+        match self {
+            Self::Emissive { radiance } => Some(radiance),
+            _ => self.phong().filter(|p| p.ka > 0.0 || p.kd > 0.0).map(|p| &p.colour),
+        }
+    }
+
+    /// The image that it shows, where it shows one: only then are texture coordinates worked out.
+    pub fn image(&self) -> Option<&ImageTexture> {
+        self.texture().and_then(Texture::image)
+    }
+
     /// Its name in scene files.
     pub fn name(&self) -> &'static str {
         match self {
@@ -263,6 +278,8 @@ impl Material {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{Encoding, Image};
+    use std::sync::Arc;
 
     fn clear(ior: f64) -> Transparent {
         let interface = Interface::new(1.0, ior).expect("valid");
@@ -280,10 +297,36 @@ mod tests {
 
     #[test]
     fn zero_coefficients_leave_no_parts() {
-        let scattering = Material::Matte(Phong { ka: 1.0, ..Phong::NONE }).scattering(DVec3::ZERO);
+        let scattering =
+            Material::Matte(Phong { ka: 1.0, ..Phong::NONE }).scattering(DVec3::ZERO, || unreachable!());
         assert!(!scattering.answers_lights() && scattering.specular().is_none());
         assert_eq!(scattering.ambient, Rgb::ONE);
-        let scattering = Material::Reflective { phong: Phong::NONE, kr: Rgb::ZERO }.scattering(DVec3::ZERO);
+        let scattering = Material::Reflective { phong: Phong::NONE, kr: Rgb::ZERO }
+            .scattering(DVec3::ZERO, || unreachable!());
         assert_eq!(scattering, Scattering::BLACK);
+    }
+
+    /// Texture coordinates are worked out for an image that is looked at, and for nothing else.
+    #[test]
+    fn only_an_image_that_is_seen_asks_for_texture_coordinates() {
+        let image = Image::from_bytes("red", [1, 1], vec![[255, 0, 0]], Encoding::Srgb).expect("valid");
+        let colour = Texture::Image(ImageTexture::new(Arc::new(image)));
+        let asks = |material: &Material| {
+            let mut asked = false;
+            material.scattering(DVec3::ZERO, || {
+                asked = true;
+                DVec2::ZERO
+            });
+            assert_eq!(asked, material.image().is_some());
+            asked
+        };
+        let with = |kd: f64| Phong { colour: colour.clone(), kd, ..Phong::NONE };
+        assert!(asks(&Material::Matte(with(0.5))) && asks(&Material::Phong(with(0.5))));
+        assert!(asks(&Material::Emissive { radiance: colour.clone() }));
+        assert!(!asks(&Material::Reflective { phong: with(0.0), kr: Rgb::ONE }));
+        assert!(!asks(&Material::Transparent(Transparent { phong: with(0.0), ..clear(1.5) })));
+        assert!(!asks(&Material::Matte(Phong { kd: 0.5, ..Phong::NONE })));
+        let red = Material::Matte(with(0.5)).scattering(DVec3::ZERO, || DVec2::ZERO);
+        assert_eq!(red.diffuse.map(|d| d.reflectance), Some(Rgb::X * 0.5));
     }
 }

@@ -164,7 +164,7 @@ mod tests {
     fn a_mixture_is_sampled_as_it_is_evaluated() {
         let colour = Texture::Constant(Rgb::new(0.3, 0.6, 0.2));
         let phong = Phong { colour, kd: 0.5, ks: Rgb::splat(0.9), exponent: 20.0, ..Phong::NONE };
-        let scattering = Material::Phong(phong).scattering(DVec3::ZERO);
+        let scattering = Material::Phong(phong).scattering(DVec3::ZERO, || unreachable!());
         let wo = DVec3::new(0.6, 0.0, 0.8);
         let (mut sampled, mut integrated, mut densities) = (Rgb::ZERO, Rgb::ZERO, 0.0);
         let edge = 100;

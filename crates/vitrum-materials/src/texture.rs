@@ -1,14 +1,17 @@
 //! Colours that vary in space.
 
-use vitrum_math::{DVec3, Rgb};
+use crate::ImageTexture;
+use vitrum_math::{DVec2, DVec3, Rgb};
 
-/// A colour at each point of the world.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A colour at each point of a surface.
+#[derive(Clone, Debug, PartialEq)]
 pub enum Texture {
     /// The same everywhere.
     Constant(Rgb),
     /// Two colours in turn.
     Checker(Checker),
+    /// An image.
+    Image(ImageTexture),
 }
 
 /// A checkerboard, or a lattice of cubes, in world space.
@@ -45,12 +48,44 @@ pub struct Axes {
 }
 
 impl Texture {
-    /// The colour at a point of the world.
+    /// The colour at a point of the world, whose texture coordinates `uv` works out where they are needed.
     #[inline]
-    pub fn at(&self, point: DVec3) -> Rgb {
+    pub fn at(&self, point: DVec3, uv: impl FnOnce() -> DVec2) -> Rgb {
         match self {
             Self::Constant(colour) => *colour,
             Self::Checker(checker) => checker.at(point),
+            Self::Image(image) => image.at(uv()),
+        }
+    }
+
+    /// True where it is not the same everywhere.
+    pub fn varies(&self) -> bool {
+        !matches!(self, Self::Constant(_))
+    }
+
+    /// The image, where it is one: it needs texture coordinates.
+    pub fn image(&self) -> Option<&ImageTexture> {
+        match self {
+            Self::Image(image) => Some(image),
+            _ => None,
+        }
+    }
+
+    /// The largest value of any channel anywhere.
+    pub fn brightest(&self) -> f64 {
+        match self {
+            Self::Constant(colour) => colour.max_element(),
+            Self::Checker(checker) => checker.even.max(checker.odd).max_element(),
+            Self::Image(image) => image.brightest().max_element(),
+        }
+    }
+
+    /// How bright it is roughly, on the whole: zero only where it is black everywhere. A single bright texel does not make an
+    /// image bright.
+    pub fn brightness(&self) -> f64 {
+        match self {
+            Self::Image(image) => image.mean().max_element(),
+            _ => self.brightest(),
         }
     }
 }
@@ -81,7 +116,8 @@ mod tests {
     fn neighbours_differ_across_every_axis_that_counts() {
         let axes = Axes { x: true, y: false, z: true };
         let checker = Checker { even: Rgb::ONE, odd: Rgb::ZERO, size: 0.5, origin: DVec3::ZERO, axes };
-        let at = |x: f64, y: f64, z: f64| Texture::Checker(checker).at(DVec3::new(x, y, z));
+        let at =
+            |x: f64, y: f64, z: f64| Texture::Checker(checker).at(DVec3::new(x, y, z), || unreachable!());
         assert_eq!(at(0.1, 0.0, 0.1), Rgb::ONE);
         assert_eq!(at(-0.1, 0.0, 0.1), Rgb::ZERO);
         assert_eq!(at(0.1, 0.0, 0.6), Rgb::ZERO);

@@ -13,7 +13,7 @@ use crate::settings::{Integrator, LightSampling, Settings};
 use std::f64::consts::PI;
 use std::sync::Arc;
 use vitrum_geometry::{AreaSampler, SurfaceInteraction};
-use vitrum_materials::{Material, Texture};
+use vitrum_materials::Material;
 use vitrum_math::{DVec3, Rgb};
 
 /// More lights than this are not estimated one by one.
@@ -219,22 +219,21 @@ fn share(up_to: &[f64], index: usize) -> f64 {
     up_to[index] - if index == 0 { 0.0 } else { up_to[index - 1] }
 }
 
-/// The largest radiance that a material sends out.
+/// Roughly the radiance that a material sends out; zero only where it sends out none.
 fn brightness(material: &Material) -> f64 {
     match material {
-        Material::Emissive { radiance: Texture::Constant(colour) } => colour.max_element(),
-        Material::Emissive { radiance: Texture::Checker(checker) } => {
-            checker.even.max(checker.odd).max_element()
-        }
+        Material::Emissive { radiance } => radiance.brightness(),
         _ => 0.0,
     }
 }
 
-/// Radiance that a material sends out at a point.
+/// Radiance that a face of an object sends out at a point.
 #[inline]
-pub(crate) fn emitted(material: &Material, point: DVec3) -> Rgb {
-    match material {
-        Material::Emissive { radiance } => radiance.at(point),
+pub(crate) fn emitted(scene: &Scene, object: u32, face: u32, point: DVec3) -> Rgb {
+    match scene.material(object, face) {
+        Material::Emissive { radiance } => {
+            radiance.at(point, || scene.aggregate().uv_at(object, face, point))
+        }
         _ => Rgb::ZERO,
     }
 }

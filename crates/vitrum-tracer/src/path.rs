@@ -159,7 +159,7 @@ impl Walker<'_, Path> {
                 if sample.towards.dot(sample.ng) >= 0.0 {
                     return Rgb::ZERO;
                 }
-                let radiance = emitted(self.scene.material(*object, sample.face), sample.point);
+                let radiance = emitted(self.scene, *object, sample.face, sample.point);
                 (sample.towards, sample.distance * (1.0 - SHORT), radiance, Some(sample.pdf * probability))
             }
         };
@@ -212,7 +212,7 @@ impl Walker<'_, Path> {
             && hit.t < distance
         {
             let sheet = self.scene.aggregate().interaction(&query, &hit);
-            let scattering = self.scene.material(hit.object, hit.face).scattering(sheet.point);
+            let scattering = self.scene.scattering(&hit, sheet.point);
             let is_thin = matches!(scattering.specular(), Some(Bxdf::ThinDielectric(_)));
             let through = if is_thin { self.split(&sheet, &scattering).0.transmitted } else { None };
             let (Some(through), true) = (through, sheets > 0) else { return Rgb::ZERO };

@@ -36,6 +36,8 @@ pub struct Plan {
     pub rough: bool,
     /// Textures that vary.
     pub textures: bool,
+    /// Images among them: texture coordinates at hits, and in meshes.
+    pub images: bool,
     /// Meshes with interpolated normals.
     pub smooth_normals: bool,
     /// Meshes, each with its own tree.
@@ -74,11 +76,7 @@ impl Plan {
             + environment_lights
             + scene.lights.iter().take(lights).filter(|l| l.casts_shadows()).count();
         let dielectrics = materials.iter().any(Material::is_dielectric);
-        let varies = |t: &Texture| matches!(t, Texture::Checker(_));
-        let textures = materials.iter().any(|m| match m {
-            Material::Emissive { radiance } => varies(radiance),
-            _ => m.phong().is_some_and(|p| (p.ka > 0.0 || p.kd > 0.0) && varies(&p.colour)),
-        });
+        let textures = materials.iter().filter_map(Material::texture).any(Texture::varies);
         let meshes = objects.iter().filter_map(|o| match o.shape() {
             Shape::Mesh(mesh) => Some(mesh),
             _ => None,
@@ -103,6 +101,7 @@ impl Plan {
                 .iter()
                 .any(|m| matches!(m, Material::Reflective { .. } | Material::Conductor(_))),
             textures,
+            images: materials.iter().any(|m| m.image().is_some()),
             smooth_normals: meshes.clone().any(|m| m.is_smooth()),
             meshes: meshes.count(),
             object_tree: scene.aggregate().uses_tree(),
@@ -133,10 +132,7 @@ fn radiance_bound(scene: &Scene) -> Option<f64> {
     let mut bound = scene.background.brightest();
     for material in scene.materials() {
         match material {
-            Material::Emissive { radiance: Texture::Constant(c) } => bound = bound.max(c.max_element()),
-            Material::Emissive { radiance: Texture::Checker(c) } => {
-                bound = bound.max(c.even.max(c.odd).max_element());
-            }
+            Material::Emissive { radiance } => bound = bound.max(radiance.brightest()),
             Material::Transparent(t) if (t.kr + t.kt).max_element() > 1.0 => return None,
             _ => {}
         }

@@ -3,16 +3,16 @@
 use crate::background::Background;
 use crate::camera::Camera;
 use crate::light::Light;
-use vitrum_geometry::{Aggregate, Object};
-use vitrum_materials::{Absorption, IndexOfRefraction, Material};
-use vitrum_math::Rgb;
+use vitrum_geometry::{Aggregate, Hit, Object};
+use vitrum_materials::{Absorption, IndexOfRefraction, Material, Scattering};
+use vitrum_math::{DVec3, Rgb};
 
 /// An object with its name and material, as it enters a [`Scene`].
 #[derive(Clone, Debug)]
 pub struct SceneObject {
     /// Unique in the scene; objects are sorted by it, so that their order in a file never matters.
     pub name: String,
-    /// The shape in its place.
+    /// The shape in its place; made by [`Object::with_uvs`] where a material shows an image.
     pub object: Object,
     /// What it is made of: the materials that its faces number (see [`Object::material_of`]). A number beyond the last
     /// stands for the last.
@@ -137,6 +137,13 @@ impl Scene {
         let materials = self.materials_of(object);
         let number = self.aggregate.objects()[object as usize].material_of(face) as usize;
         &materials[number.min(materials.len() - 1)]
+    }
+
+    /// What the surface does to light at a hit, whose point is given.
+    // Always, because what it returns is large and would be copied.
+    #[inline(always)]
+    pub fn scattering(&self, hit: &Hit, point: DVec3) -> Scattering {
+        self.material(hit.object, hit.face).scattering(point, || self.aggregate.uv(hit, point))
     }
 
     /// The medium behind a face of an object, on the side that its normal points to or on the other one; `None` where the

@@ -110,7 +110,7 @@ impl<'s, P: Policy> Walker<'s, P> {
                 }
                 node.throughput *= self.scene.absorption_of(node.medium).transmittance(hit.t);
             }
-            let scattering = self.scene.material(hit.object, hit.face).scattering(surface.point);
+            let scattering = self.scene.scattering(&hit, surface.point);
 
             // The surface sends out light of its own, and returns what the lights send to it; light from other surfaces
             // arrives along the children.

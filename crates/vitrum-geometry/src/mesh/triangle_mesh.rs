@@ -8,7 +8,7 @@ use crate::departure::{Departure, Query};
 use crate::wide::{Build, FrameRay, Items, UnitFrame, WideTree};
 #[cfg(test)]
 use crate::wide::{Isa, Portable};
-use vitrum_math::{Bounds, DVec3, Ray, Vec3, gamma};
+use vitrum_math::{Bounds, DVec2, DVec3, Ray, Vec3, gamma};
 
 /// Triangles in a unit frame of their own (single precision), with the tree that finds them.
 #[derive(Clone, Debug)]
@@ -21,6 +21,9 @@ pub struct TriangleMesh {
     /// Corner normals for shading, unit length in the mesh's frame; empty for a mesh with flat faces.
     normals: Vec<Vec3>,
     normal_triangles: Vec<[u32; 3]>,
+    /// Texture coordinates; empty where the mesh has none, or nothing shows an image.
+    uvs: Vec<[f32; 2]>,
+    uv_triangles: Vec<[u32; 3]>,
     /// Number of the material of each triangle; empty when all have the same.
     materials: Vec<u32>,
     pub(super) tree: WideTree<TriangleBlock>,
@@ -58,8 +61,8 @@ pub enum MeshError {
         /// Its largest coordinate, in magnitude.
         coordinate: f64,
     },
-    /// A corner that names a vertex or normal that does not exist.
-    #[error("triangle {triangle} names a vertex or normal that does not exist")]
+    /// A corner that names a vertex, normal or texture coordinate that does not exist.
+    #[error("triangle {triangle} names a vertex, normal or texture coordinate that does not exist")]
     Index {
         /// Index of the first such triangle, from 0.
         triangle: usize,
@@ -95,8 +98,9 @@ fn keep<T>(all: &mut Vec<T>, kept: &[bool]) {
 }
 
 impl TriangleMesh {
-    /// Prepares a mesh for tracing. Its normals, where it has any, are used for shading. What is taken is used or freed before
-    /// the tree is built, so that there is no second copy of the mesh beside it.
+    /// Prepares a mesh for tracing. Its normals, where it has any, are used for shading, its texture coordinates for images; what
+    /// nobody needs is better emptied before. What is taken is used or freed before the tree is built, so that there is no second
+    /// copy of the mesh beside it.
     ///
     /// # Errors
     /// [`MeshError`] for a mesh that is empty, not finite, too large, or has indices out of range.
@@ -122,11 +126,22 @@ impl TriangleMesh {
             .iter()
             .take_while(|_| smooth)
             .position(|t| !in_range(t, data.normals.len()));
-        if let Some(triangle) = bad_position.or(bad_normal) {
+        let mapped = data.uv_triangles.len() == data.triangles.len();
+        let bad_uv =
+            data.uv_triangles.iter().take_while(|_| mapped).position(|t| !in_range(t, data.uvs.len()));
+        if let Some(triangle) = bad_position.or(bad_normal).or(bad_uv) {
             return Err(MeshError::Index { triangle });
         }
 
-        let MeshData { positions, mut triangles, normals, mut normal_triangles, mut materials, .. } = data;
+        let MeshData {
+            positions,
+            mut triangles,
+            normals,
+            mut normal_triangles,
+            uvs,
+            mut uv_triangles,
+            mut materials,
+        } = data;
         let used = triangles.iter().flatten().map(|&i| positions[i as usize]);
         let bounds = Bounds::around(used);
         let frame = UnitFrame::around(&bounds);
@@ -135,6 +150,12 @@ impl TriangleMesh {
             normals.into_iter().map(|n| n.normalize_or_zero().as_vec3()).collect()
         } else {
             normal_triangles.clear();
+            vec![]
+        };
+        let uvs: Vec<[f32; 2]> = if mapped {
+            uvs.into_iter().map(|uv| uv.as_vec2().to_array()).collect()
+        } else {
+            uv_triangles.clear();
             vec![]
         };
         if materials.len() != triangles.len() {
@@ -149,6 +170,7 @@ impl TriangleMesh {
         let kept: Vec<bool> = triangles.iter().map(has_area).collect();
         keep(&mut triangles, &kept);
         keep(&mut normal_triangles, &kept);
+        keep(&mut uv_triangles, &kept);
         keep(&mut materials, &kept);
         if triangles.is_empty() {
             return Err(MeshError::Empty);
@@ -162,7 +184,18 @@ impl TriangleMesh {
         let too_large = || MeshError::TooLarge(triangles.len());
         let tree = WideTree::build(boxes, BLOCKS_OF_TRIANGLES, build).ok_or_else(too_large)?;
         let tree = tree.map(|faces| TriangleBlock::new(faces, |face| corners(&triangles[face as usize])));
-        Ok(Self { frame, bounds, vertices, triangles, normals, normal_triangles, materials, tree })
+        Ok(Self {
+            frame,
+            bounds,
+            vertices,
+            triangles,
+            normals,
+            normal_triangles,
+            uvs,
+            uv_triangles,
+            materials,
+            tree,
+        })
     }
 
     /// Looks at the vertices alone: what comes before any arithmetic with them.
@@ -207,12 +240,19 @@ impl TriangleMesh {
         !self.normals.is_empty()
     }
 
+    /// True when it has texture coordinates.
+    pub fn has_uvs(&self) -> bool {
+        !self.uvs.is_empty()
+    }
+
     /// Bytes on the heap.
     pub fn memory(&self) -> usize {
         size_of_val(&*self.vertices)
             + size_of_val(&*self.triangles)
             + size_of_val(&*self.normals)
             + size_of_val(&*self.normal_triangles)
+            + size_of_val(&*self.uvs)
+            + size_of_val(&*self.uv_triangles)
             + size_of_val(&*self.materials)
             + self.tree.memory()
     }
@@ -335,6 +375,25 @@ impl TriangleMesh {
         // Interpolation rounds five times on coordinates of at most one half; then the frame's centre is added.
         let error = gamma(6) / self.frame.scale() + gamma(1) * point.abs().max_element();
         MeshPoint { point, ng: normal / normal.dot(normal).sqrt(), ns, error }
+    }
+
+    /// The texture coordinates of `face` with the given weights of its second and third corner; zero where it has none.
+    pub(crate) fn uv(&self, face: u32, [b1, b2]: [f64; 2]) -> DVec2 {
+        let Some(corners) = self.uv_triangles.get(face as usize) else { return DVec2::ZERO };
+        let [a, b, c] = corners.map(|i| {
+            let [u, v] = self.uvs[i as usize];
+            DVec2::new(f64::from(u), f64::from(v))
+        });
+        a * (1.0 - b1 - b2) + b * b1 + c * b2
+    }
+
+    /// The weights of the second and third corner of `face` at a point of it, given in the units of the mesh.
+    pub(crate) fn barycentrics(&self, face: u32, point: DVec3) -> [f64; 2] {
+        let [a, b, c] = self.triangle(face);
+        let (ab, ac) = (b - a, c - a);
+        let normal = ab.cross(ac);
+        let (offset, area_squared) = (point - a, normal.dot(normal));
+        [offset.cross(ac).dot(normal) / area_squared, ab.cross(offset).dot(normal) / area_squared]
     }
 
     /// An error of a point, given in the units of the mesh, in units of its unit frame: what a ray that starts there

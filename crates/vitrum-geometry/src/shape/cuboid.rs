@@ -9,7 +9,8 @@
 //! meets exactly one other.
 
 use super::{Crossing, Crossings, Leaving, ShapeError, SurfacePoint, finite};
-use vitrum_math::{Bounds, DVec3, Ray};
+use crate::uv::tangents;
+use vitrum_math::{Bounds, DVec2, DVec3, Ray};
 
 /// An axis-aligned box.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,6 +86,20 @@ impl Cuboid {
         point[axis] = if upper { self.max[axis] } else { self.min[axis] };
         normal[axis] = if upper { 1.0 } else { -1.0 };
         SurfacePoint { point, normal }
+    }
+
+    /// The place of a point on `face`, each face from 0 to 1 along its tangents.
+    pub(crate) fn uv(&self, point: DVec3, face: u32) -> DVec2 {
+        let mut normal = DVec3::ZERO;
+        normal[(face / 2) as usize] = if face % 2 == 1 { 1.0 } else { -1.0 };
+        // Along the axes a tangent picks one coordinate; backwards, it counts from the other end.
+        let place = (point - self.min) / (self.max - self.min);
+        let along = |tangent: DVec3| {
+            let share = tangent.dot(place);
+            if tangent.dot(DVec3::ONE) < 0.0 { 1.0 + share } else { share }
+        };
+        let [right, up] = tangents(normal);
+        DVec2::new(along(right), along(up))
     }
 }
 

@@ -11,7 +11,8 @@
 //! leaves inward meets exactly one face.
 
 use super::{Crossing, Crossings, Leaving, ShapeError, SurfacePoint, direction, finite, radius};
-use vitrum_math::{Bounds, DVec3, Ray};
+use crate::uv::{front_and_right, in_square, turn};
+use vitrum_math::{Bounds, DVec2, DVec3, Ray};
 
 const WALL: u32 = 0;
 const BOTTOM: u32 = 1;
@@ -162,6 +163,18 @@ impl Cylinder {
                 let height = height.clamp(0.0, self.height);
                 SurfacePoint { point: self.bottom + self.axis * height + normal * self.radius, normal }
             }
+        }
+    }
+
+    /// Angle and height of a point of the wall; the place of a point of a cap in the square around it.
+    pub(crate) fn uv(&self, point: DVec3, face: u32) -> DVec2 {
+        let [front, right] = front_and_right(self.axis);
+        let offset = point - self.bottom;
+        let (front, right) = (front.dot(offset), right.dot(offset));
+        match face {
+            BOTTOM => in_square(right / self.radius, front / self.radius),
+            TOP => in_square(right / self.radius, -front / self.radius),
+            _ => DVec2::new(turn(right, front), self.axis.dot(offset) / self.height),
         }
     }
 }

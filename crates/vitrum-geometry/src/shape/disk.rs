@@ -7,7 +7,8 @@
 //! | `radius` | metres | > 0 |
 
 use super::{Crossings, Leaving, ShapeError, SurfacePoint, direction, finite, plane_distance, radius};
-use vitrum_math::{Bounds, DVec3, Ray};
+use crate::uv::{in_square, tangents};
+use vitrum_math::{Bounds, DVec2, DVec3, Ray};
 
 /// A flat disk.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,6 +74,13 @@ impl Disk {
     pub fn surface_point(&self, ray: &Ray, t: f64) -> SurfacePoint {
         let p = ray.at(t);
         SurfacePoint { point: p - self.normal * self.normal.dot(p - self.centre), normal: self.normal }
+    }
+
+    /// The place of a point in the square around the disk.
+    pub(crate) fn uv(&self, point: DVec3) -> DVec2 {
+        let [right, up] = tangents(self.normal);
+        let offset = (point - self.centre) / self.radius;
+        in_square(right.dot(offset), up.dot(offset))
     }
 }
 

@@ -8,7 +8,8 @@
 //! One face, never hit again by a ray that leaves it.
 
 use super::{Crossings, Leaving, ShapeError, SurfacePoint, direction, finite, plane_distance};
-use vitrum_math::{DVec3, Ray};
+use crate::uv::tangents;
+use vitrum_math::{DVec2, DVec3, Ray};
 
 /// An infinite plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,6 +51,13 @@ impl Plane {
     pub fn surface_point(&self, ray: &Ray, t: f64) -> SurfacePoint {
         let p = ray.at(t);
         SurfacePoint { point: p - self.normal * self.normal.dot(p - self.point), normal: self.normal }
+    }
+
+    /// Metres from its point along the tangents.
+    pub(crate) fn uv(&self, point: DVec3) -> DVec2 {
+        let [right, up] = tangents(self.normal);
+        let offset = point - self.point;
+        DVec2::new(right.dot(offset), up.dot(offset))
     }
 }
 

@@ -74,6 +74,12 @@ impl Rectangle {
         let c = self.coordinates(ray, t).clamp(DVec2::ZERO, DVec2::ONE);
         SurfacePoint { point: self.corner + self.edges[0] * c.x + self.edges[1] * c.y, normal: self.normal }
     }
+
+    /// The coordinates of a point along the edges.
+    pub(crate) fn uv(&self, point: DVec3) -> DVec2 {
+        let offset = point - self.corner;
+        DVec2::new(self.dual[0].dot(offset), self.dual[1].dot(offset))
+    }
 }
 
 #[cfg(test)]

@@ -11,7 +11,9 @@
 //! onto the sphere. A ray that leaves the sphere inward starts on it, so the other crossing is `t = −2 f·d / d·d`.
 
 use super::{Crossing, Crossings, Leaving, ShapeError, SurfacePoint, finite, radius};
-use vitrum_math::{Bounds, DVec3, Ray};
+use crate::uv::turn;
+use std::f64::consts::PI;
+use vitrum_math::{Bounds, DVec2, DVec3, Ray};
 
 /// A sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,6 +74,13 @@ impl Sphere {
         let from_centre = (ray.origin - self.centre) + ray.direction * t;
         let normal = from_centre / from_centre.dot(from_centre).sqrt();
         SurfacePoint { point: self.centre + normal * self.radius, normal }
+    }
+
+    /// Longitude and latitude of a point, each from 0 to 1.
+    pub(crate) fn uv(&self, point: DVec3) -> DVec2 {
+        let p = point - self.centre;
+        let latitude = libm::atan2(p.y, (p.x * p.x + p.z * p.z).sqrt());
+        DVec2::new(turn(p.x, p.z), 0.5 + latitude / PI)
     }
 }
 

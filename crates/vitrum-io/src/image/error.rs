@@ -83,4 +83,56 @@ pub enum ImageError {
         /// What the library said.
         message: String,
     },
+    /// There is no file of this name.
+    #[error("{}: there is no such file", path.display())]
+    NotFound {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The file is no image that can be read.
+    #[error("{}: {found}, expected an image: PNG, JPEG, Radiance HDR or OpenEXR", path.display())]
+    NotAnImage {
+        /// The file.
+        path: PathBuf,
+        /// What it is, or begins with.
+        found: String,
+    },
+    /// The file is damaged or cut off.
+    #[error("{}: the file cannot be read as {format} ({message}); it may be damaged or cut off", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What it seems to be.
+        format: &'static str,
+        /// What the library said.
+        message: String,
+    },
+    /// The image is larger than this reader takes.
+    #[error("{}: the image has {width} x {height} pixels, the limit is {limit} together; scale it down", path.display())]
+    TooManyPixels {
+        /// The file.
+        path: PathBuf,
+        /// Width in pixels.
+        width: u32,
+        /// Height in pixels.
+        height: u32,
+        /// The largest number taken.
+        limit: u64,
+    },
+    /// The image holds pixels that are no colours.
+    #[error("{}: {reason}; write the image again without them", path.display())]
+    BadPixels {
+        /// The file.
+        path: PathBuf,
+        /// How many, and the first.
+        reason: String,
+    },
+    /// A linear image is said to be encoded for a display.
+    #[error("{}: {format} is linear, and was said to be encoded as sRGB; leave out `encoding`", path.display())]
+    Encoding {
+        /// The file.
+        path: PathBuf,
+        /// Its format.
+        format: &'static str,
+    },
 }

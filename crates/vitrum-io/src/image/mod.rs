@@ -1,4 +1,4 @@
-//! Images out, and back in for comparing: linear OpenEXR and display-ready PNG.
+//! Images out, and back in for comparing: linear OpenEXR and display-ready PNG. Images in for textures: `read.rs`.
 //!
 //! Pixels are linear Rec.709 radiance, in rows from the top, each from the left. The extension of the file's name
 //! decides the format: `.exr` keeps every bit (`openexr.rs`), `.png` is for looking at (`png.rs`, `tone.rs`). Radiance that
@@ -10,12 +10,14 @@ mod error;
 mod openexr;
 mod png;
 mod radiance;
+mod read;
 mod tone;
 
 use std::io::Write;
 use std::path::Path;
 
 pub use error::{ImageError, WriteError};
+pub use read::{Texels, read_texture};
 pub use tone::{Display, Tone};
 
 use crate::atomic;

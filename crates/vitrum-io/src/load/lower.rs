@@ -1,7 +1,7 @@
 //! From a description to a scene: every name resolved, every number in the tracer's own units.
 
-use super::matter::Matter;
-use super::meshes::{MeshReport, Meshes};
+use super::matter::{Matter, Told};
+use super::meshes::{MeshReport, Meshes, NeedsUvs, Prepared};
 use super::naming::{self, Names, fnv1a};
 use super::origin::Origin;
 use super::{LoadError, Loaded, SceneOptions, environment, error};
@@ -50,7 +50,7 @@ pub(super) fn lower(
         named: objects_by_name(desc),
         source,
         folder,
-        matter: Matter::new(desc),
+        matter: Matter::new(desc, folder),
         meshes,
         names: Names::default(),
         problems,
@@ -62,11 +62,13 @@ pub(super) fn lower(
     }
     for object in &desc.objects {
         if let scene::Shape::Mesh { file, normals, build, group, .. } = &lowering.original(object).shape {
+            let needs_uvs = lowering.needs_uvs(object);
             lowering.meshes.announce(
                 &folder.join(file),
                 *normals,
                 *build,
                 group.as_ref().map(|name| &*name.text),
+                needs_uvs,
             );
         }
     }
@@ -80,6 +82,7 @@ pub(super) fn lower(
         origin.files.push(file.clone());
         origin.hashes.push(*materials);
     }
+    origin.files.extend(lowering.matter.images().files().cloned());
     if let scene::Background::Image { file, .. } = &desc.background {
         origin.files.push(folder.join(file));
     }
@@ -212,6 +215,16 @@ impl<'a> Lowering<'a> {
         object.material.as_ref().or_else(|| self.original(object).material.as_ref())
     }
 
+    /// When the mesh of an object needs texture coordinates.
+    fn needs_uvs(&self, object: &scene::Object) -> NeedsUvs {
+        let described = match self.choice(object) {
+            None => return NeedsUvs { always: false, by_file: true },
+            Some(MaterialChoice::Inline(material)) => Some(&**material),
+            Some(MaterialChoice::Named(name)) => self.matter.named(&name.text),
+        };
+        NeedsUvs { always: described.is_some_and(|d| self.matter.shows_image(d)), by_file: false }
+    }
+
     /// The material of a choice that an object makes.
     fn chosen(&mut self, choice: &MaterialChoice, object: &scene::Object) -> Option<Material> {
         let described = match choice {
@@ -225,7 +238,8 @@ impl<'a> Lowering<'a> {
                 }
             },
         };
-        self.matter.material(described, self.source, &mut self.problems)
+        let told = Told { source: self.source, problems: &mut self.problems };
+        self.matter.material(described, told)
     }
 
     fn material_of(&mut self, object: &scene::Object) -> Option<Material> {
@@ -285,10 +299,13 @@ impl<'a> Lowering<'a> {
         let names = naming::of_parts(&base, &own);
         for (part, name) in parts.into_iter().zip(names) {
             let materials = match &chosen {
-                Some(Some(material)) => vec![*material],
+                Some(Some(material)) => vec![material.clone()],
                 Some(None) => continue,
-                None => self.imported(&part.materials, object),
+                None => self.imported(&part.materials, &path, part.mesh.has_uvs(), object),
             };
+            if !self.check_coordinates(&part, name.strip_prefix(&base), &materials, file_span) {
+                continue;
+            }
             let report = MeshReport { object: name.clone(), ..part.report };
             let is_glass = materials.iter().any(Material::is_dielectric);
             self.check_solid(&report, name.strip_prefix(&base), is_glass, force, file_span);
@@ -301,12 +318,19 @@ impl<'a> Lowering<'a> {
     fn imported(
         &mut self,
         materials: &[Option<crate::obj::MtlMaterial>],
+        path: &Path,
+        has_uvs: bool,
         object: &scene::Object,
     ) -> Vec<Material> {
         let undefined = crate::obj::MtlMaterial::undefined("");
+        let folder = path.parent().unwrap_or_else(|| Path::new(""));
         let mut imported = Vec::new();
         for material in materials {
-            match self.matter.imported(&material.as_ref().unwrap_or(&undefined).meaning()) {
+            let material = material.as_ref().unwrap_or(&undefined);
+            let problems = &mut self.problems;
+            let mut warn =
+                |warning: String| problems.push(Diagnostic::warning(path.display().to_string(), warning));
+            match self.matter.imported(material, folder, has_uvs, &mut warn) {
                 Ok(material) => imported.push(material),
                 Err(reason) => {
                     let label = "the material library of this model";
@@ -315,6 +339,34 @@ impl<'a> Lowering<'a> {
             }
         }
         imported
+    }
+
+    /// An image needs texture coordinates; a mesh without any is refused. `part` as for [`check_solid`](Self::check_solid).
+    fn check_coordinates(
+        &mut self,
+        prepared: &Prepared,
+        part: Option<&str>,
+        materials: &[Material],
+        span: crate::diagnostic::Span,
+    ) -> bool {
+        let Some(texture) = materials.iter().find_map(Material::image) else { return true };
+        let (mesh, image) = (named(&prepared.report, part), texture.image.name());
+        if !prepared.mesh.has_uvs() {
+            let message = format!("{mesh} has no texture coordinates (vt), so `{image}` has no place on it");
+            let problem = error(self.source, span, message, "this mesh");
+            self.problems.push(problem.help(
+                "unwrap the mesh in a modelling tool and export it with UVs, or take a texture of type \"checker\"",
+            ));
+            return false;
+        }
+        if prepared.unmapped_faces > 0 {
+            let count = prepared.unmapped_faces;
+            let message = format!(
+                "{mesh} has faces without texture coordinates, which show the lower left corner of `{image}`: {count}"
+            );
+            self.problems.push(Diagnostic::warning(self.source.name(), message));
+        }
+        true
     }
 
     /// Glass needs an inside. A mesh without one is refused, or taken on demand. `part` is a slash and the name of the part,
@@ -327,10 +379,7 @@ impl<'a> Lowering<'a> {
         force: bool,
         span: crate::diagnostic::Span,
     ) {
-        let mesh = match part.and_then(|part| part.strip_prefix('/')) {
-            Some(part) => format!("{}, part `{part}`,", report.file.display()),
-            None => report.file.display().to_string(),
-        };
+        let mesh = named(report, part);
         for mended in &report.mended {
             let message = format!("{mesh} was mended: {mended}");
             self.problems.push(Diagnostic::warning(self.source.name(), message));
@@ -366,13 +415,23 @@ impl<'a> Lowering<'a> {
             self.problems.push(problem.help("write integrator = \"path\" in [render], or roughness = 0"));
             return;
         }
-        match Object::new(shape, transform, object.flip) {
+        let shows_image = materials.iter().any(|m| m.image().is_some());
+        let make = if shows_image { Object::with_uvs } else { Object::new };
+        match make(shape, transform, object.flip) {
             Ok(placed) => self.objects.push(SceneObject { name, object: placed, materials }),
             Err(reason) => {
                 let message = format!("transformed, the object is degenerate: {reason}");
                 self.problems.push(error(self.source, object.span, message, "this object"));
             }
         }
+    }
+}
+
+/// A mesh in messages. `part` is a slash and the name of the part, or nothing where there is only one.
+fn named(report: &MeshReport, part: Option<&str>) -> String {
+    match part.and_then(|part| part.strip_prefix('/')) {
+        Some(part) => format!("{}, part `{part}`,", report.file.display()),
+        None => report.file.display().to_string(),
     }
 }
 

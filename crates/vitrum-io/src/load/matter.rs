@@ -1,12 +1,15 @@
 //! Media, textures and materials: names become values.
 
-use crate::diagnostic::{Diagnostics, Source};
-use crate::obj::MtlMeaning;
+use super::images::{Images, Refusal};
+use crate::diagnostic::{Diagnostic, Diagnostics, Source};
+use crate::obj::{MtlMap, MtlMaterial, MtlMeaning};
 use crate::scene::{self, ColourOrTexture, Index, Model, Pattern, SceneDesc};
 use std::collections::BTreeMap;
+use std::path::Path;
 use vitrum_bxdf::{ComplexIndex, Conductor, Ggx, Interface, ThinDielectric};
 use vitrum_materials::{
-    Absorption, Axes, Checker, Dielectric, IndexOfRefraction, Material, Media, Phong, Texture, Transparent,
+    Absorption, Axes, Checker, Dielectric, Filter, ImageTexture, IndexOfRefraction, Material, Media, Phong,
+    Texture, Transparent, Wrap,
 };
 use vitrum_math::Rgb;
 
@@ -17,7 +20,10 @@ const MODEL_KT: f64 = 0.9;
 /// The values behind the names of a scene.
 pub(super) struct Matter<'d> {
     media: BTreeMap<&'d str, (f64, scene::Absorption)>,
-    textures: BTreeMap<&'d str, Texture>,
+    textures: BTreeMap<&'d str, &'d scene::Texture>,
+    images: Images,
+    /// Where files are looked for.
+    folder: &'d Path,
     materials: BTreeMap<&'d str, &'d scene::Material>,
     /// What surrounds everything.
     pub(super) medium: IndexOfRefraction,
@@ -25,8 +31,29 @@ pub(super) struct Matter<'d> {
     pub(super) absorption: Absorption,
 }
 
+/// Where problems are told.
+pub(super) struct Told<'t> {
+    pub(super) source: &'t Source<'t>,
+    pub(super) problems: &'t mut Diagnostics,
+}
+
+/// Why there is no material.
+enum Flaw {
+    /// Something about the material itself.
+    Own(String),
+    /// Something that it uses, and that has been told.
+    Told,
+}
+
+impl From<String> for Flaw {
+    fn from(reason: String) -> Self {
+        Self::Own(reason)
+    }
+}
+
 impl<'d> Matter<'d> {
-    pub(super) fn new(desc: &'d SceneDesc) -> Self {
+    /// Of a description, whose files are looked for in `folder`.
+    pub(super) fn new(desc: &'d SceneDesc, folder: &'d Path) -> Self {
         let clear = scene::Absorption::Clear;
         let predefined = scene::schema::PREDEFINED_MEDIA.iter().map(|&(name, ior)| (name, (ior, clear)));
         let declared = desc.media.iter().map(|m| (m.name.text.as_str(), (m.ior, m.absorption)));
@@ -36,7 +63,9 @@ impl<'d> Matter<'d> {
         Self {
             medium,
             absorption,
-            textures: desc.textures.iter().map(|t| (t.name.text.as_str(), texture(&t.pattern))).collect(),
+            textures: desc.textures.iter().map(|t| (t.name.text.as_str(), t)).collect(),
+            images: Images::default(),
+            folder,
             materials: desc
                 .materials
                 .iter()
@@ -44,6 +73,11 @@ impl<'d> Matter<'d> {
                 .collect(),
             media,
         }
+    }
+
+    /// The images that it has read.
+    pub(super) fn images(&self) -> &Images {
+        &self.images
     }
 
     /// All media by name.
@@ -56,15 +90,75 @@ impl<'d> Matter<'d> {
         self.materials.get(name).copied()
     }
 
-    fn texture(&self, of: &ColourOrTexture) -> Result<Texture, String> {
-        match of {
-            ColourOrTexture::Colour(colour) => Ok(Texture::Constant(*colour)),
-            // Reading has checked the name; a description built in code may name nothing.
-            ColourOrTexture::Texture(name) => {
-                let known = self.textures.get(name.text.as_str()).copied();
-                known.ok_or_else(|| format!("there is no texture `{}`", name.text))
+    /// Whether a material, as it is described, shows an image.
+    pub(super) fn shows_image(&self, material: &scene::Material) -> bool {
+        let color = match &material.model {
+            Model::Matte { color, ka, kd } => (*ka > 0.0 || *kd > 0.0).then_some(color),
+            Model::Phong(phong) | Model::Reflective { phong, .. } | Model::Transparent { phong, .. } => {
+                (phong.ka > 0.0 || phong.kd > 0.0).then_some(&phong.color)
+            }
+            Model::Emissive { radiance } => Some(radiance),
+            Model::Dielectric { .. } | Model::Thin { .. } | Model::Conductor { .. } => None,
+        };
+        let Some(ColourOrTexture::Texture(name)) = color else { return false };
+        let texture = self.textures.get(name.text.as_str());
+        texture.is_some_and(|texture| matches!(texture.pattern, Pattern::Image { .. }))
+    }
+
+    /// The texture that gives a radiance.
+    fn texture(&mut self, of: &ColourOrTexture, told: &mut Told<'_>) -> Result<Texture, Flaw> {
+        let name = match of {
+            ColourOrTexture::Colour(colour) => return Ok(Texture::Constant(*colour)),
+            ColourOrTexture::Texture(name) => name,
+        };
+        // Reading has checked the name; a description built in code may name nothing.
+        let known = self.textures.get(name.text.as_str());
+        let texture = known.ok_or_else(|| format!("there is no texture `{}`", name.text))?;
+        match texture.pattern {
+            Pattern::Checker { even, odd, size, origin, axes: [x, y, z] } => {
+                Ok(Texture::Checker(Checker { even, odd, size, origin, axes: Axes { x, y, z } }))
+            }
+            Pattern::Image { ref file, file_span, scale, offset, wrap, filter, encoding, factor } => {
+                let path = self.folder.join(file);
+                let Told { source, problems } = told;
+                let warn = |warning: String| problems.push(Diagnostic::warning(source.name(), warning));
+                match self.images.image(&path, &file.to_string_lossy(), encoding, warn) {
+                    Ok(image) => {
+                        Ok(Texture::Image(ImageTexture { image, scale, offset, wrap, filter, factor }))
+                    }
+                    Err(Refusal { message, is_missing }) => {
+                        let mut problem = super::error(source, file_span, message, "this file");
+                        if is_missing {
+                            problem = problem.help("paths are relative to the folder of the scene file");
+                        }
+                        problems.push(problem);
+                        Err(Flaw::Told)
+                    }
+                }
             }
         }
+    }
+
+    /// The texture that gives the colour of a surface: nothing of it is brighter than 1. Of images only their files say so; of the
+    /// rest, reading has seen to it.
+    fn surface_colour(&mut self, of: &ColourOrTexture, told: &mut Told<'_>) -> Result<Texture, Flaw> {
+        let texture = self.texture(of, told)?;
+        let brightest = texture.brightest();
+        let (ColourOrTexture::Texture(name), Some(image)) = (of, texture.image()) else { return Ok(texture) };
+        if brightest <= 1.0 {
+            return Ok(texture);
+        }
+        let message = format!("the texture \"{}\" is too bright for a surface", name.text);
+        let label = format!("expected colours from 0 to 1, found up to {brightest}");
+        let problem = super::error(told.source, name.span, message, &label);
+        let problem = problem.also(
+            told.source,
+            self.textures[name.text.as_str()].span,
+            format!("it shows {}", image.image.name()),
+        );
+        let help = "only `radiance` of an emissive material can exceed 1; a smaller `factor` makes it darker";
+        told.problems.push(problem.help(help));
+        Err(Flaw::Told)
     }
 
     /// The medium of that name: its index, and what it absorbs.
@@ -97,38 +191,40 @@ impl<'d> Matter<'d> {
         Ok(Dielectric::new(interface, ggx(roughness)?, Media { outside, inside }))
     }
 
-    fn phong(&self, p: &scene::Phong) -> Result<Phong, String> {
-        let colour = self.texture(&p.color)?;
+    fn phong(&mut self, p: &scene::Phong, told: &mut Told<'_>) -> Result<Phong, Flaw> {
+        let colour = self.surface_colour(&p.color, told)?;
         Ok(Phong { colour, ka: p.ka, kd: p.kd, ks: Rgb::splat(p.ks), exponent: p.exponent })
     }
 
     /// The material behind a description; problems are told at its place.
-    pub(super) fn material(
-        &self,
-        material: &scene::Material,
-        source: &Source<'_>,
-        problems: &mut Diagnostics,
-    ) -> Option<Material> {
-        let material = self.model(&material.model).map_err(|reason| {
-            problems.push(super::error(source, material.span, reason, "this material"));
-        });
-        material.ok()
+    pub(super) fn material(&mut self, material: &scene::Material, mut told: Told<'_>) -> Option<Material> {
+        match self.model(&material.model, &mut told) {
+            Ok(material) => Some(material),
+            Err(Flaw::Own(reason)) => {
+                told.problems.push(super::error(told.source, material.span, reason, "this material"));
+                None
+            }
+            Err(Flaw::Told) => None,
+        }
     }
 
-    fn model(&self, model: &Model) -> Result<Material, String> {
+    fn model(&mut self, model: &Model, told: &mut Told<'_>) -> Result<Material, Flaw> {
         Ok(match model {
             Model::Matte { color, ka, kd } => {
-                Material::Matte(Phong { colour: self.texture(color)?, ka: *ka, kd: *kd, ..Phong::NONE })
+                let colour = self.surface_colour(color, told)?;
+                Material::Matte(Phong { colour, ka: *ka, kd: *kd, ..Phong::NONE })
             }
-            Model::Phong(phong) => Material::Phong(self.phong(phong)?),
-            Model::Reflective { phong, kr } => Material::Reflective { phong: self.phong(phong)?, kr: *kr },
-            Model::Emissive { radiance } => Material::Emissive { radiance: self.texture(radiance)? },
+            Model::Phong(phong) => Material::Phong(self.phong(phong, told)?),
+            Model::Reflective { phong, kr } => {
+                Material::Reflective { phong: self.phong(phong, told)?, kr: *kr }
+            }
+            Model::Emissive { radiance } => Material::Emissive { radiance: self.texture(radiance, told)? },
             Model::Transparent { phong, kr, kt, ior, outside } => {
                 let (above, outside) = self.outside(outside.as_ref())?;
                 let interface = between(above, above.times(*ior))?;
                 let media = Media { outside, inside: Absorption::NONE };
                 Material::Transparent(Transparent {
-                    phong: self.phong(phong)?,
+                    phong: self.phong(phong, told)?,
                     kr: *kr,
                     kt: *kt,
                     interface,
@@ -152,11 +248,25 @@ impl<'d> Matter<'d> {
         })
     }
 
-    /// What a material of a model file becomes.
-    pub(super) fn imported(&self, meaning: &MtlMeaning) -> Result<Material, String> {
-        let matte =
-            |colour: Rgb| Phong { colour: Texture::Constant(colour), ka: 1.0, kd: 1.0, ..Phong::NONE };
-        Ok(match *meaning {
+    /// What a material of a model file becomes, with an image instead of its colour where it shows one. `folder` is that of the
+    /// file.
+    ///
+    /// # Errors
+    /// What is the matter, where it can't be a material at all.
+    pub(super) fn imported(
+        &mut self,
+        material: &MtlMaterial,
+        folder: &Path,
+        has_uvs: bool,
+        warn: &mut dyn FnMut(String),
+    ) -> Result<Material, String> {
+        let mut matte = |color: Rgb| Phong {
+            colour: self.imported_colour(material, color, folder, has_uvs, warn),
+            ka: 1.0,
+            kd: 1.0,
+            ..Phong::NONE
+        };
+        Ok(match material.meaning() {
             MtlMeaning::Matte { color } => Material::Matte(matte(color)),
             MtlMeaning::Phong { color, ks, exponent } => {
                 Material::Phong(Phong { ks, exponent, ..matte(color) })
@@ -171,6 +281,53 @@ impl<'d> Matter<'d> {
                 media: Media { outside: self.absorption, inside: Absorption::NONE },
             }),
         })
+    }
+
+    /// The colour of a material of a model file: its map, or without a good one its plain colour. A library is never a reason to
+    /// refuse a model.
+    fn imported_colour(
+        &mut self,
+        material: &MtlMaterial,
+        color: Rgb,
+        folder: &Path,
+        has_uvs: bool,
+        warn: &mut dyn FnMut(String),
+    ) -> Texture {
+        let plain = Texture::Constant(color);
+        let Some(MtlMap { file, scale, offset, clamp }) = &material.map_kd else { return plain };
+        let name = &material.name;
+        if !has_uvs {
+            warn(format!(
+                "material `{name}` shows `{file}` on faces without texture coordinates (vt), which have its plain colour"
+            ));
+            return plain;
+        }
+        let path = folder.join(file);
+        let path = if path.exists() { path } else { folder.join(file.replace('\\', "/")) };
+        let image = match self.images.image(&path, file, None, &mut *warn) {
+            Ok(image) => image,
+            Err(Refusal { message, .. }) => {
+                warn(format!(
+                    "material `{name}` has its plain colour, for its map cannot be shown: {message}"
+                ));
+                return plain;
+            }
+        };
+        let image = ImageTexture {
+            image,
+            scale: *scale,
+            offset: *offset,
+            wrap: if *clamp { Wrap::Clamp } else { Wrap::Repeat },
+            filter: Filter::Bilinear,
+            factor: material.kd.unwrap_or(Rgb::ONE),
+        };
+        if image.brightest().max_element() > 1.0 {
+            warn(format!(
+                "material `{name}` has its plain colour, for `{file}` is brighter than a surface can be"
+            ));
+            return plain;
+        }
+        Texture::Image(image)
     }
 }
 
@@ -200,12 +357,4 @@ fn absorption(described: scene::Absorption) -> Result<Absorption, String> {
 
 fn ggx(alpha: f64) -> Result<Ggx<f64>, String> {
     if alpha == 0.0 { Ok(Ggx::smooth()) } else { Ggx::isotropic(alpha).map_err(|e| e.to_string()) }
-}
-
-fn texture(pattern: &Pattern) -> Texture {
-    match *pattern {
-        Pattern::Checker { even, odd, size, origin, axes: [x, y, z] } => {
-            Texture::Checker(Checker { even, odd, size, origin, axes: Axes { x, y, z } })
-        }
-    }
 }

@@ -4,7 +4,7 @@ use super::naming::fnv1a;
 use crate::obj::{self, MtlMaterial, ObjError, ObjFile, Part};
 use crate::scene::Normals;
 use std::borrow::Cow;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use vitrum_geometry::mesh::{
@@ -40,11 +40,22 @@ pub(super) struct Prepared {
     pub(super) mesh: Arc<TriangleMesh>,
     /// What the materials that its faces number are in the file; `None` where the file names none.
     pub(super) materials: Vec<Option<MtlMaterial>>,
+    /// Faces without texture coordinates where others have some.
+    pub(super) unmapped_faces: usize,
     pub(super) report: MeshReport,
 }
 
 /// What was asked for: a file, normals, a build, and the object or group.
 type Wanted = (PathBuf, u8, u8, Option<String>);
+
+/// When a mesh keeps its texture coordinates.
+#[derive(Clone, Copy, Default)]
+pub(super) struct NeedsUvs {
+    /// A material of the scene shows an image on it.
+    pub(super) always: bool,
+    /// It has the materials of its file: if these show images.
+    pub(super) by_file: bool,
+}
 
 /// All files of a scene, each read once, and each way of using one prepared once. A file is given away to the last thing
 /// that is [announced](Self::announce) to be made of it, so that it does not lie beside what is made.
@@ -55,7 +66,7 @@ pub(super) struct Meshes {
     /// What has been read, with a hash of its materials.
     read: Vec<(PathBuf, u64)>,
     /// What is still to be prepared.
-    announced: BTreeSet<Wanted>,
+    announced: BTreeMap<Wanted, NeedsUvs>,
     prepared: BTreeMap<Wanted, Result<Vec<Prepared>, PrepareError>>,
 }
 
@@ -102,8 +113,17 @@ impl Meshes {
     }
 
     /// Says that [`prepare`](Self::prepare) is going to be asked for this.
-    pub(super) fn announce(&mut self, path: &Path, normals: Normals, build: Build, group: Option<&str>) {
-        self.announced.insert(wanted(path, normals, build, group));
+    pub(super) fn announce(
+        &mut self,
+        path: &Path,
+        normals: Normals,
+        build: Build,
+        group: Option<&str>,
+        needs_uvs: NeedsUvs,
+    ) {
+        let needs = self.announced.entry(wanted(path, normals, build, group)).or_default();
+        needs.always |= needs_uvs.always;
+        needs.by_file |= needs_uvs.by_file;
     }
 
     /// The parts of a file with the given normals, or of it the object or group of a name. `warn` takes what the file itself
@@ -118,8 +138,8 @@ impl Meshes {
     ) -> Result<&[Prepared], &PrepareError> {
         let key = wanted(path, normals, build, group);
         if !self.prepared.contains_key(&key) {
-            self.announced.remove(&key);
-            let prepared = self.prepare_anew(path, normals, build, group, warn);
+            let needs_uvs = self.announced.remove(&key).unwrap_or_default();
+            let prepared = self.prepare_anew(path, normals, build, group, needs_uvs, warn);
             self.prepared.insert(key.clone(), prepared);
         }
         self.prepared[&key].as_ref().map(Vec::as_slice)
@@ -131,6 +151,7 @@ impl Meshes {
         normals: Normals,
         build: Build,
         group: Option<&str>,
+        needs_uvs: NeedsUvs,
         warn: &mut impl FnMut(&str),
     ) -> Result<Vec<Prepared>, PrepareError> {
         if !self.files.contains_key(path) {
@@ -143,7 +164,7 @@ impl Meshes {
         {
             file.warnings.iter().for_each(|w| warn(w));
         }
-        let is_last = self.announced.iter().all(|other| other.0 != path);
+        let is_last = self.announced.keys().all(|other| other.0 != path);
         let file = if is_last {
             Cow::Owned(self.files.remove(path).expect("it has just been read").0)
         } else {
@@ -155,8 +176,10 @@ impl Meshes {
             name: group.unwrap_or_default().to_owned(),
             present,
         })?;
-        let prepared: Result<Vec<_>, _> =
-            parts.into_iter().map(|part| prepare(path, part, &materials, normals, build)).collect();
+        let prepared: Result<Vec<_>, _> = parts
+            .into_iter()
+            .map(|part| prepare(path, part, &materials, normals, build, needs_uvs))
+            .collect();
         prepared.map_err(|reason| PrepareError::Mesh { path: path.to_owned(), reason })
     }
 }
@@ -222,6 +245,7 @@ fn prepare(
     materials: &[MtlMaterial],
     normals: Normals,
     build: Build,
+    needs_uvs: NeedsUvs,
 ) -> Result<Prepared, MeshError> {
     let mut data = part.mesh;
     TriangleMesh::check_positions(&data)?;
@@ -239,6 +263,10 @@ fn prepare(
         used.iter().map(|&u| of(u as usize)).collect()
     };
 
+    let by_file = needs_uvs.by_file && materials.iter().flatten().any(|m| m.map_kd.is_some());
+    if !(needs_uvs.always || by_file) {
+        (data.uvs, data.uv_triangles) = (Vec::new(), Vec::new());
+    }
     let (data, mended) = mend(data);
     let health = health(&data);
     let data = match normals {
@@ -257,5 +285,11 @@ fn prepare(
         mended: mended.iter().map(ToString::to_string).collect(),
         memory: mesh.memory(),
     };
-    Ok(Prepared { name: part.name, mesh: Arc::new(mesh), materials, report })
+    Ok(Prepared {
+        name: part.name,
+        mesh: Arc::new(mesh),
+        materials,
+        unmapped_faces: part.unmapped_faces,
+        report,
+    })
 }

@@ -8,6 +8,7 @@
 //! Lowering goes on after a problem, so that all of them are told at once.
 
 mod environment;
+mod images;
 mod lower;
 mod matter;
 mod meshes;

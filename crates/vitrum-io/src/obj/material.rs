@@ -16,11 +16,12 @@
 //!   others white, into every opaque one.
 //! - `d` (and `Tr` = 1 − d) is *coverage*, the part of the surface that is there, and not transmission: light that
 //!   goes through does not bend. It is never read as glass, never used, and said.
+//! - `map_Kd` takes the place of the colour of Phong and matte materials, times `Kd` (white if not given).
 //! - `Tf` filters light once at each crossing of the surface, whatever the thickness.
 //!
 //! Source: Alias Wavefront, MTL material format, 1995 (illumination models 0 to 10).
 
-use vitrum_math::Rgb;
+use vitrum_math::{DVec2, Rgb};
 
 /// A material as an MTL file gives it; `None` where it says nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -45,6 +46,21 @@ pub struct MtlMaterial {
     pub d: Option<f64>,
     /// `illum`: illumination model, 0 to 10.
     pub illum: Option<u32>,
+    /// `map_Kd`: an image, which `Kd` is multiplied by.
+    pub map_kd: Option<MtlMap>,
+}
+
+/// An image of an MTL file. The place in it is uv times `scale` plus `offset`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MtlMap {
+    /// Its path, from the folder of the OBJ file.
+    pub file: String,
+    /// `-s`: how often it repeats.
+    pub scale: DVec2,
+    /// `-o`: the place in it of u = v = 0.
+    pub offset: DVec2,
+    /// `-clamp on`: beyond its edges are their colours, and not the image again.
+    pub clamp: bool,
 }
 
 /// What an [`MtlMaterial`] stands for, decided by the table in the module's manual. Colours are linear Rec.709.
@@ -126,6 +142,10 @@ impl MtlMaterial {
                  for glass write `illum 7` and `Ni`, or give the object a material in the scene"
             )),
             _ => {}
+        }
+        let has_colour = matches!(self.meaning(), MtlMeaning::Matte { .. } | MtlMeaning::Phong { .. });
+        if self.map_kd.is_some() && !has_colour {
+            remarks.push(format!("material `{name}` has no diffuse colour, so its map_Kd is not used"));
         }
         match self.ni {
             None if is_glass => remarks.push(format!(

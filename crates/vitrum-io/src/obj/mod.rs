@@ -6,7 +6,8 @@
 //!   outside. Positions, normals and texture coordinates keep their separate indices.
 //! - Faces with more than three corners are cut into triangles, concave ones too (`polygon.rs`).
 //! - A corner without a usable normal takes its face's normal where other faces of the part have normals; a part
-//!   without any has none. Smoothing groups, vertex colours and texture maps are not used.
+//!   without any has none. Smoothing groups, vertex colours and texture maps but that of the colour
+//!   (`map_Kd`) are not used.
 //! - What is passed over is said in [`ObjFile::warnings`], once per kind. What makes the geometry doubtful (a vertex
 //!   that does not exist or is not finite, a number that is none) refuses the file: [`ObjError`].
 //! - Materials: the table in `material.rs`. A missing library is a warning.
@@ -33,7 +34,7 @@ use std::path::Path;
 use vitrum_geometry::mesh::MeshData;
 
 pub use error::ObjError;
-pub use material::{MtlMaterial, MtlMeaning};
+pub use material::{MtlMap, MtlMaterial, MtlMeaning};
 
 use parts::Assembly;
 use scan::{Scan, Tally};
@@ -65,6 +66,8 @@ pub struct Part {
     pub mesh: MeshData,
     /// The material of all its faces, in [`ObjFile::materials`]; `None` if the file names none, or several.
     pub material: Option<usize>,
+    /// Its faces without texture coordinates where others have some: they take the place u = v = 0.
+    pub unmapped_faces: usize,
     /// Its groups in the order of their triangles; one that was left and entered again is there twice.
     pub groups: Vec<Group>,
 }

@@ -115,7 +115,10 @@ impl Assembler<'_> {
             let names = self.scan.groups.list[group].0.split_ascii_whitespace();
             names.map(move |name| Group { name: name.to_owned(), triangles: triangles.clone() })
         });
-        let part = Part { name: name.to_owned(), mesh: data, material: None, groups: groups.collect() };
+        let unmapped = runs.iter().filter(|(run, _)| has_uvs && !run.kind.has_uvs);
+        let unmapped_faces = unmapped.map(|(run, next_face)| next_face - run.first_face).sum();
+        let groups = groups.collect();
+        let part = Part { name: name.to_owned(), mesh: data, material: None, unmapped_faces, groups };
         Unpainted { part, run_ends }
     }
 

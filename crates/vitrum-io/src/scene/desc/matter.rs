@@ -1,6 +1,9 @@
 //! Media, textures and materials.
 
-use vitrum_math::{DVec3, Rgb};
+use std::path::PathBuf;
+
+use vitrum_materials::{Encoding, Filter, Wrap};
+use vitrum_math::{DVec2, DVec3, Rgb};
 
 use super::Name;
 use crate::diagnostic::Span;
@@ -70,6 +73,25 @@ pub enum Pattern {
         origin: DVec3,
         /// Along which of x, y and z cells alternate; at least one.
         axes: [bool; 3],
+    },
+    /// An image.
+    Image {
+        /// As written: relative to the scene file.
+        file: PathBuf,
+        /// Where the path stands.
+        file_span: Span,
+        /// How often it repeats from 0 to 1 of u and of v; none is zero.
+        scale: DVec2,
+        /// The place in the image of u = v = 0.
+        offset: DVec2,
+        /// What lies beyond its edges.
+        wrap: Wrap,
+        /// What lies between the middles of pixels.
+        filter: Filter,
+        /// What its numbers mean; none is what the format of the file says.
+        encoding: Option<Encoding>,
+        /// What its colours are multiplied by, 0 or more.
+        factor: Rgb,
     },
 }
 

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use toml::de::DeTable;
+use vitrum_materials::{Encoding, Filter, Wrap};
 use vitrum_math::Rgb;
 
 use super::super::schema::{self, Realm, Table};
@@ -11,7 +12,7 @@ use super::super::{
     Texture,
 };
 use super::context::shorten;
-use super::{Context, Fields, Problem, Span};
+use super::{Context, Fields, Problem, Span, value};
 
 /// By how much `kr + kt` may exceed 1 without a warning: what is left of decimal fractions in f64.
 const SUM_TOLERANCE: f64 = 1e-12;
@@ -61,6 +62,7 @@ pub(super) fn texture(cx: &mut Context<'_>, table: &DeTable<'_>, span: Span) -> 
     let name = fields.name(Realm::Texture);
     let pattern = match fields.variant() {
         Some("checker") => checker(&mut fields),
+        Some("image") => image(&mut fields),
         Some(other) => panic!("no reader for a {other} texture"),
         None => None,
     };
@@ -84,6 +86,28 @@ fn checker(fields: &mut Fields<'_, '_>) -> Option<Pattern> {
     let origin = fields.point("origin");
     let axes = fields.choice("axes", &AXES);
     Some(Pattern::Checker { even: even?, odd: odd?, size: size?, origin: origin?, axes: axes? })
+}
+
+fn image(fields: &mut Fields<'_, '_>) -> Option<Pattern> {
+    let file = fields.text("file");
+    let scale = fields.read("scale", value::repeats);
+    let offset = fields.read("offset", value::pair);
+    let wraps = [("repeat", Wrap::Repeat), ("clamp", Wrap::Clamp), ("mirror", Wrap::Mirror)];
+    let wrap = fields.choice("wrap", &wraps);
+    let filter = fields.choice("filter", &[("bilinear", Filter::Bilinear), ("nearest", Filter::Nearest)]);
+    let encoding = fields.choice("encoding", &[("srgb", Encoding::Srgb), ("linear", Encoding::Linear)]);
+    let factor = fields.colour("factor");
+    let file = file?;
+    Some(Pattern::Image {
+        file: file.text.into(),
+        file_span: file.span,
+        scale: scale?,
+        offset: offset?,
+        wrap: wrap?,
+        filter: filter?,
+        encoding,
+        factor: factor?,
+    })
 }
 
 /// A material of either schema: with a name, or at its object without one.
@@ -226,6 +250,8 @@ pub(super) fn check_reflectances(
         .iter()
         .filter(|texture| match texture.pattern {
             Pattern::Checker { even, odd, .. } => even.max(odd).max_element() > 1.0,
+            // Known when the file is read.
+            Pattern::Image { .. } => false,
         })
         .map(|texture| (texture.name.text.as_str(), texture))
         .collect();

@@ -2,7 +2,7 @@
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
-use vitrum_math::{DVec3, Rgb};
+use vitrum_math::{DVec2, DVec3, Rgb};
 
 use super::super::schema::{Key, Kind, Range, Realm, SMALLEST, Table};
 use super::super::{ColourOrTexture, MAX_ENTRIES, Name};
@@ -158,6 +158,26 @@ fn numbers<const N: usize>(cx: &mut Context<'_>, key: &Key, value: &Value<'_>) -
         }
     }
     complete.then_some(numbers)
+}
+
+pub(super) fn pair(cx: &mut Context<'_>, key: &Key, value: &Value<'_>) -> Option<DVec2> {
+    numbers(cx, key, value).map(DVec2::from_array)
+}
+
+/// One number for both, or two; none of them zero.
+pub(super) fn repeats(cx: &mut Context<'_>, key: &Key, value: &Value<'_>) -> Option<DVec2> {
+    let factors = match value.get_ref() {
+        DeValue::Integer(_) | DeValue::Float(_) => number(cx, key, value).map(DVec2::splat),
+        _ => pair(cx, key, value),
+    }?;
+    if factors.abs().min_element() < SMALLEST {
+        let label =
+            format!("found {}, expected factors of at least {SMALLEST:e}", cx.shown(value.span().into()));
+        let message = format!("`{}` is singular: all of the surface shows one line of the image", key.name);
+        cx.report(Problem::error(value.span().into(), message, label).help(meaning(key)));
+        return None;
+    }
+    Some(factors)
 }
 
 pub(super) fn point(cx: &mut Context<'_>, key: &Key, value: &Value<'_>) -> Option<DVec3> {

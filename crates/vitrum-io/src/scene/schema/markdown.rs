@@ -58,6 +58,8 @@ fn value(kind: Kind) -> String {
         Kind::Number => "number".into(),
         Kind::Integer => "integer".into(),
         Kind::Size => "`[width, height]`".into(),
+        Kind::Pair => "`[u, v]`".into(),
+        Kind::Repeats => "number or `[u, v]`, none 0".into(),
         Kind::Point => "`[x, y, z]`".into(),
         Kind::Vector => "`[x, y, z]`, not all 0".into(),
         Kind::Scale => "number or `[x, y, z]`, none 0".into(),

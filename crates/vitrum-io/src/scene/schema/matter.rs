@@ -1,6 +1,6 @@
 //! Media, textures and materials.
 
-use super::{Choice, Key, Kind, Range, Realm, Table, Variant};
+use super::{Choice, FARTHEST, Key, Kind, Range, Realm, Table, Variant};
 
 /// `[[medium]]`
 pub const MEDIUM: Table = Table {
@@ -60,10 +60,11 @@ pub const TEXTURE: Table = Table {
     keys: &[Key::new("name", Kind::Name, "what a material's `color` or `radiance` refers to")],
     choice: Some(Choice {
         key: "type",
-        variants: &[Variant {
-            name: "checker",
-            meaning: "Cells of two colours in turn, fixed in the scene.",
-            keys: &[
+        variants: &[
+            Variant {
+                name: "checker",
+                meaning: "Cells of two colours in turn, fixed in the scene.",
+                keys: &[
                 Key::light("even", "colour of the cell that starts at the origin"),
                 Key::light("odd", "colour of its neighbours"),
                 Key::length("size", "edge of a cell"),
@@ -74,10 +75,37 @@ pub const TEXTURE: Table = Table {
                     "along which axes cells alternate; leave out the one square to a flat floor",
                 )
                 .default("\"xz\""),
-            ],
-        }],
+                ],
+            },
+            Variant {
+                name: "image",
+                meaning: "An image on the surface, placed by texture coordinates (below).",
+                keys: &[
+                    Key::new("file", Kind::File, "PNG, JPEG, Radiance HDR or OpenEXR, by what is in it; relative to the scene file"),
+                    Key::new("scale", Kind::Repeats, "how often the image repeats from 0 to 1 of u and of v; negative mirrors it")
+                        .range(Range::Closed(-FARTHEST, FARTHEST))
+                        .default("1"),
+                    Key::new("offset", Kind::Pair, "the place in the image of u = v = 0: uv times `scale` is added to it")
+                        .range(Range::Closed(-FARTHEST, FARTHEST))
+                        .default("[0, 0]"),
+                    Key::new("wrap", Kind::Choice(&["repeat", "clamp", "mirror"]), "what lies beyond the image: the image again, the colours of its edge, or its mirror image")
+                        .default("\"repeat\""),
+                    Key::new("filter", Kind::Choice(&["bilinear", "nearest"]), "what lies between the middles of pixels: a mixture of four, or the nearest")
+                        .default("\"bilinear\""),
+                    Key::new("encoding", Kind::Choice(&["srgb", "linear"]), "of PNG and JPEG: colours for a display, or numbers in proportion to light")
+                        .or("`\"srgb\"`; HDR and EXR are linear"),
+                    Key::light("factor", "what its colours are multiplied by: the tint of a surface, the strength of a `radiance`")
+                        .default("1"),
+                ],
+            },
+        ],
     }),
-    hints: &[],
+    hints: &[
+        ("path", "the name of the image stands in `file`"),
+        ("repeat", "how often the image repeats is `scale`"),
+        ("gamma", "what the numbers of an image mean is `encoding`: \"srgb\" or \"linear\""),
+        ("brightness", "what the colours of an image are multiplied by is `factor`"),
+    ],
 };
 
 /// A surface colour.

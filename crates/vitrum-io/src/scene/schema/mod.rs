@@ -118,6 +118,10 @@ pub enum Kind {
     File,
     /// Two integers, width and height.
     Size,
+    /// Two numbers.
+    Pair,
+    /// Two numbers, or one that stands for both, none of them zero.
+    Repeats,
     /// Three numbers.
     Point,
     /// Three numbers, not all zero.
@@ -326,6 +330,8 @@ impl Kind {
             Self::Text => "a string".into(),
             Self::File => "the path of a file (a string)".into(),
             Self::Size => "[width, height], two integers".into(),
+            Self::Pair => "[u, v], two numbers".into(),
+            Self::Repeats => "a number or [u, v], none of them zero".into(),
             Self::Point => "[x, y, z], three numbers".into(),
             Self::Vector => "[x, y, z], three numbers, not all zero".into(),
             Self::Scale => "a number or [x, y, z], none of them zero".into(),
