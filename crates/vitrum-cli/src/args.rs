@@ -7,7 +7,7 @@ use std::time::Duration;
 use vitrum_io::load::{ModelMaterial, ModelOptions};
 use vitrum_io::scene::Normals;
 use vitrum_math::Sequence;
-use vitrum_tracer::{Branching, Crop, Integrator, LightSampling, Target};
+use vitrum_tracer::{Branching, Crop, Filter, Integrator, LightSampling, Target};
 
 /// Renders glass, accurately and fast.
 #[derive(Debug, Parser)]
@@ -103,6 +103,10 @@ pub(crate) struct Render {
     /// Random numbers, for study
     #[arg(long, value_enum, value_name = "S", default_value_t = SequenceChoice::Sobol)]
     pub(crate) sequence: SequenceChoice,
+
+    /// Which points of the film a pixel is the mean of, in place of the scene's choice
+    #[arg(long, value_enum, value_name = "F")]
+    pub(crate) filter: Option<FilterChoice>,
 
     /// Deepest ray, in place of the scene's; the camera ray has depth 0
     #[arg(long, value_name = "N", value_parser = whole::<0, 1000>, allow_negative_numbers = true)]
@@ -206,6 +210,26 @@ impl From<IntegratorChoice> for Integrator {
         match choice {
             IntegratorChoice::Whitted => Self::Whitted,
             IntegratorChoice::Path => Self::Path,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum FilterChoice {
+    /// Those of its square
+    Box,
+    /// Falling to the middles of its neighbours
+    Tent,
+    /// A bell over three pixels
+    BlackmanHarris,
+}
+
+impl From<FilterChoice> for Filter {
+    fn from(choice: FilterChoice) -> Self {
+        match choice {
+            FilterChoice::Box => Self::Box,
+            FilterChoice::Tent => Self::Tent,
+            FilterChoice::BlackmanHarris => Self::BlackmanHarris,
         }
     }
 }

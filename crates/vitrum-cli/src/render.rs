@@ -15,8 +15,8 @@ use vitrum_io::load::{Loaded, SceneOptions};
 use vitrum_materials::Material;
 use vitrum_math::{Rgb, Sequence};
 use vitrum_tracer::{
-    Branching, Ended, Integrator, LightSampling, RenderError, Rendering, Settings, ShadowMode, Target,
-    on_threads, render, resume,
+    Branching, Ended, Filter, Integrator, LightSampling, RenderError, Rendering, Settings, ShadowMode,
+    Target, on_threads, render, resume,
 };
 
 /// The clock of the program: the libraries have none.
@@ -43,6 +43,12 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
     }
     let settings = settings(&loaded, arguments);
     check_integrator(&loaded, settings.integrator)?;
+    if arguments.channels.contains(&ChannelChoice::Error) && settings.spp < LEAST_FOR_ERRORS {
+        return Err(Failure::usage(format!(
+            "--channels error: found {} samples per pixel; a standard error takes at least {LEAST_FOR_ERRORS}",
+            settings.spp
+        )));
+    }
     let store = Store::new(&arguments.output, &loaded, &settings)?;
     let film = if arguments.resume { Some(store.read()?) } else { None };
     let loading = start.elapsed();
@@ -78,19 +84,19 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
     }
 
     let writing = now();
-    // First: from it the picture can be made again, and not the other way round.
-    if is_stopped || arguments.checkpoint {
-        store.write(&rendering.film)?;
-    }
+    // First: from it the picture can be made again, and not the other way round. But where it fails there is the picture still.
+    let is_kept = is_stopped || arguments.checkpoint;
+    let kept = if is_kept { store.write(&rendering.film) } else { Ok(()) };
     let pixels = rendering.film.image();
     let view = ImageView { width: area.width, height: area.height, pixels: &pixels };
-    let channels = channels(&rendering, &arguments.channels)?;
+    let channels = channels(&rendering, &arguments.channels);
     let metadata = metadata(&settings, rendering.film.samples());
     image::write(&arguments.output, view, &channels, &metadata, loaded.display)?;
     if let Some(trouble) = store.trouble() {
         say(&format!("warning: a checkpoint could not be kept: {trouble}\n"));
     }
-    if was_begun && !is_stopped && !arguments.checkpoint {
+    kept?;
+    if was_begun && !is_kept {
         store.remove()?;
     }
     let phases = Phases { loading, rendering: rendering_time, writing: writing.elapsed() };
@@ -104,26 +110,26 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
     Ok(if is_stopped { interrupt.code() } else { ExitCode::SUCCESS })
 }
 
-/// What an .exr holds beside radiance.
-fn channels(rendering: &Rendering, asked: &[ChannelChoice]) -> Result<Vec<Channel>, Failure> {
+/// What an .exr holds beside radiance. A render that was stopped early knows no errors.
+fn channels(rendering: &Rendering, asked: &[ChannelChoice]) -> Vec<Channel> {
+    let film = &rendering.film;
+    let errors = film.standard_error().filter(|_| asked.contains(&ChannelChoice::Error)).unwrap_or_default();
     let mut channels = Vec::new();
-    if asked.contains(&ChannelChoice::Error) {
-        let errors = rendering.film.standard_error().ok_or_else(|| {
-            Failure::usage(
-                "--channels error: a standard error takes at least two rounds: 9 samples per pixel",
-            )
-        })?;
+    if !errors.is_empty() {
         for (c, name) in ["error.R", "error.G", "error.B"].into_iter().enumerate() {
             let values = errors.iter().map(|pixel| pixel[c]).collect();
             channels.push(Channel { name: name.to_owned(), values });
         }
     }
     if asked.contains(&ChannelChoice::Samples) {
-        let values = rendering.film.sample_counts().into_iter().map(|n| n as f32).collect();
+        let values = film.sample_counts().into_iter().map(|n| n as f32).collect();
         channels.push(Channel { name: "samples.Y".to_owned(), values });
     }
-    Ok(channels)
+    channels
 }
+
+/// Two rounds: their difference is what tells a standard error.
+const LEAST_FOR_ERRORS: u32 = 9;
 
 /// Samples per pixel where an error or a time ends the render.
 const MOST_SAMPLES: u32 = 1_000_000;
@@ -140,6 +146,7 @@ fn settings(loaded: &Loaded, arguments: &Render) -> Settings {
         },
         until: arguments.until,
         max_depth: arguments.max_depth.or(scene.max_depth),
+        filter: arguments.filter.map_or(scene.filter, Into::into),
         integrator: arguments.integrator.map_or(scene.integrator, Into::into),
         branching: arguments.branching.map_or(scene.branching, Into::into),
         light_sampling: arguments.light_sampling.into(),
@@ -232,6 +239,11 @@ pub(crate) fn decisive(settings: &Settings) -> Vec<(String, String)> {
     ];
     if let Some(most) = settings.clamp {
         pairs.push(pair("clamp", format!("{most} (biased)")));
+    }
+    match settings.filter {
+        Filter::Box => {}
+        Filter::Tent => pairs.push(pair("filter", "tent".to_owned())),
+        Filter::BlackmanHarris => pairs.push(pair("filter", "blackman-harris".to_owned())),
     }
     if settings.sequence == Sequence::Independent {
         pairs.push(pair("sequence", "independent".to_owned()));

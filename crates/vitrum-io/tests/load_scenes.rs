@@ -102,3 +102,29 @@ fn scenes_named_by_a_missing_file_or_folder_say_so() {
     assert!(said(Path::new("no/such.toml")).contains("no/such.toml: there is no such scene file"));
     assert!(said(Path::new(env!("CARGO_MANIFEST_DIR"))).contains("is a folder, expected a scene file"));
 }
+
+/// Lights of no power are left out, and that is said with their place.
+#[test]
+fn lights_without_power_are_said() {
+    let dark = r#"
+[[light]]
+type = "point"
+position = [0, 5, 0]
+intensity = 0
+
+[[object]]
+shape = "sphere"
+center = [0, 3, 0]
+radius = 0.5
+material = { type = "emissive", radiance = 0 }
+"#;
+    let text = format!("{TWO_BALLS}{dark}");
+    let loaded = load::scene_text("dark.toml", &text, Path::new("")).expect("only warnings");
+    assert!(loaded.scene.lights.is_empty());
+    let said = loaded.warnings.to_string();
+    for part in
+        ["a light without power is left out", "an emissive object without power lights nothing", "dark.toml:"]
+    {
+        assert!(said.contains(part), "{said}");
+    }
+}

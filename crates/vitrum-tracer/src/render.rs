@@ -1,6 +1,7 @@
 //! Tiles, samples and threads.
 
 use crate::film::{Buffer, Film, Pixel, PixelSum};
+use crate::filter::FilterSampler;
 use crate::light_sampler::LightSampler;
 use crate::path::Path;
 use crate::plan::Plan;
@@ -221,6 +222,7 @@ fn render_tile<P: Policy>(
     progress: &dyn Progress,
 ) -> Option<(Vec<Pixel>, Stats)> {
     let mut walker = Walker::<P>::new(scene, lights, settings, plan);
+    let filter = FilterSampler::new(settings.filter);
     let mut pixels = Vec::with_capacity(tile.width as usize * tile.height as usize);
     let mut sum = PixelSum::default();
     let seed = settings.seed.wrapping_add(buffer as u64 * OTHER_BUFFER);
@@ -235,7 +237,7 @@ fn render_tile<P: Policy>(
                     return None;
                 }
                 let address = SampleAddress::new(seed, x, y, sample).of_sequence(settings.sequence);
-                let [dx, dy] = address.pair(NodeKey::ROOT, Purpose::Film);
+                let [dx, dy] = filter.sample(address.pair(NodeKey::ROOT, Purpose::Film));
                 let lens = || address.pair(NodeKey::ROOT, Purpose::Lens);
                 let ray = scene.camera.ray(f64::from(x) + dx, f64::from(y) + dy, settings.size, lens);
                 let radiance = walker.radiance(ray, &address);

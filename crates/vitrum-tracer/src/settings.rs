@@ -1,5 +1,6 @@
 //! How a scene is rendered, apart from what is in it.
 
+use crate::filter::Filter;
 use vitrum_math::Sequence;
 
 /// How light is followed.
@@ -82,6 +83,8 @@ pub struct Settings {
     pub spp: u32,
     /// The error to reach; none takes the samples as they are, the same number in each pixel.
     pub until: Option<Target>,
+    /// Which points of the film a pixel is the mean of.
+    pub filter: Filter,
     /// A ray deeper than this is not traced; the camera ray has depth 0. None: see [`deepest`](Self::deepest).
     pub max_depth: Option<u32>,
     /// How light is followed.
@@ -115,6 +118,7 @@ impl Default for Settings {
             crop: None,
             spp: 16,
             until: None,
+            filter: Filter::Box,
             max_depth: None,
             integrator: Integrator::Whitted,
             branching: Branching::Tree,

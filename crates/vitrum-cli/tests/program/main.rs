@@ -3,6 +3,7 @@
 mod bad_input;
 mod bad_output;
 mod models;
+mod rounds;
 #[cfg(unix)]
 mod signals;
 mod talk;

@@ -1,4 +1,4 @@
-//! ^C and termination: the picture is kept, as far as it is; asked twice, the program ends at once.
+//! ^C and termination: the picture is kept, as far as it is, and can be gone on with; asked twice, the program ends at once.
 
 use crate::workplace::{SCENE, Workplace, scene_with};
 use std::fs::File;
@@ -56,7 +56,33 @@ fn asked_once_the_picture_is_kept() {
             picture.pixels.iter().flatten().all(|c| c.is_finite() && *c > 0.0),
             "no pixel without samples"
         );
-        assert_eq!(place.names(), ["picture.exr", "scene.toml"]);
+        assert!(said.ends_with("--resume, from picture.exr.checkpoint\n"), "{said}");
+        assert_eq!(place.names(), ["picture.exr", "picture.exr.checkpoint", "scene.toml"]);
+    }
+}
+
+/// Stopped and gone on with, the picture is the one that it would have been, byte by byte; then the checkpoint goes.
+#[test]
+fn going_on_gives_the_same_file() {
+    let place = Workplace::new();
+    place.write("scene.toml", scene_with("ior = 1.5", "ior = 1.5, kr = 0.1, kt = 1"));
+    for more in [&["--spp", "1500"][..], &["--until", "relmse=3e-9", "--spp", "3000"]] {
+        let render = ["render", "scene.toml", "--size", "64x48", "--channels", "error,samples"];
+        let whole = [&render[..], &["-o", "whole.exr"], more].concat();
+        place.succeed(&whole);
+        let part = [&render[..], &["-o", "part.exr"], more].concat();
+        let mut child = place.command(&part).stderr(Stdio::null()).spawn().expect("the program starts");
+        thread::sleep(Duration::from_millis(300));
+        // On a fast machine it may be done by now.
+        if child.try_wait().expect("a child can be waited for").is_none() {
+            send("INT", &child);
+        }
+        let code = code(&mut child);
+        if code == Some(130) {
+            place.succeed(&[&part[..], &["--resume"]].concat());
+        }
+        assert!(place.read("part.exr") == place.read("whole.exr"), "{more:?} ended with {code:?}");
+        assert_eq!(place.names(), ["part.exr", "scene.toml", "whole.exr"]);
     }
 }
 

@@ -14,11 +14,11 @@ use std::sync::Arc;
 use vitrum_geometry::Object;
 use vitrum_geometry::mesh::Build;
 use vitrum_geometry::shape::{Cuboid, Cylinder, Disk, Plane, Rectangle, Shape, ShapeError, Sphere};
-use vitrum_materials::Material;
+use vitrum_materials::{Material, Texture};
 use vitrum_math::{Rgb, Transform, unit};
 use vitrum_tracer::{
-    Background, Branching, Camera, Falloff, Integrator, Light, Projection, Scene, SceneObject, Settings,
-    ShadowMode,
+    Background, Branching, Camera, Falloff, Filter, Integrator, Light, Projection, Scene, SceneObject,
+    Settings, ShadowMode,
 };
 
 /// Everything that lowering an object needs and adds to.
@@ -93,7 +93,7 @@ pub(super) fn lower(
             scene.background = background;
             scene.medium = matter.medium;
             scene.absorption = matter.absorption;
-            (scene.ambient, scene.lights) = lights(&desc.lights);
+            (scene.ambient, scene.lights) = lights(&desc.lights, source, &mut problems);
             problems.sort();
             Ok(Loaded {
                 scene,
@@ -239,7 +239,13 @@ impl<'a> Lowering<'a> {
             },
         };
         let told = Told { source: self.source, problems: &mut self.problems };
-        self.matter.material(described, told)
+        let material = self.matter.material(described, told)?;
+        if matches!(&material, Material::Emissive { radiance: Texture::Constant(Rgb::ZERO) }) {
+            let warning =
+                Diagnostic::warning(self.source.name(), "an emissive object without power lights nothing");
+            self.problems.push(warning.at(self.source, object.span, "its radiance is 0: it is black"));
+        }
+        Some(material)
     }
 
     fn material_of(&mut self, object: &scene::Object) -> Option<Material> {
@@ -460,8 +466,8 @@ fn analytic(shape: &scene::Shape) -> Result<Shape, ShapeError> {
 }
 
 /// Ambient radiance, and the other lights in the order of their names (unnamed ones by what they are), so that sums over
-/// them never depend on the order in the file.
-fn lights(described: &[scene::Light]) -> (Rgb, Vec<Light>) {
+/// them never depend on the order in the file. Lights without power are left out, and said.
+fn lights(described: &[scene::Light], source: &Source<'_>, problems: &mut Diagnostics) -> (Rgb, Vec<Light>) {
     let mut ambient: Vec<(String, Rgb)> = Vec::new();
     let mut lights: Vec<(String, Light)> = Vec::new();
     for light in described {
@@ -491,7 +497,10 @@ fn lights(described: &[scene::Light]) -> (Rgb, Vec<Light>) {
                 Light::Directional { towards: -unit(direction), irradiance, shadows }
             }
         };
-        if !lowered.is_dark() {
+        if lowered.is_dark() {
+            let warning = Diagnostic::warning(source.name(), "a light without power is left out");
+            problems.push(warning.at(source, light.span, "it shines with 0"));
+        } else {
             let key = light
                 .name
                 .as_ref()
@@ -560,6 +569,11 @@ fn settings(render: &scene::Render, integrator: Integrator) -> Settings {
         spp: render.spp,
         max_depth: render.max_depth,
         cutoff: render.cutoff,
+        filter: match render.filter {
+            scene::Filter::Box => Filter::Box,
+            scene::Filter::Tent => Filter::Tent,
+            scene::Filter::BlackmanHarris => Filter::BlackmanHarris,
+        },
         seed: render.seed,
         shadow: match render.shadow {
             scene::Shadow::Opaque => ShadowMode::Opaque,

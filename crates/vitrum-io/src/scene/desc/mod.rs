@@ -13,7 +13,7 @@ mod picture;
 pub use light::{Falloff, Light, LightKind};
 pub use matter::{Absorption, ColourOrTexture, Index, Material, Medium, Model, Pattern, Phong, Texture};
 pub use object::{MaterialChoice, Normals, Object, Shape, Step, Transform};
-pub use picture::{Background, Branching, Camera, Integrator, Lens, Output, Render, Shadow, Tone};
+pub use picture::{Background, Branching, Camera, Filter, Integrator, Lens, Output, Render, Shadow, Tone};
 
 use crate::diagnostic::Span;
 

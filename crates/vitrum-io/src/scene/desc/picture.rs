@@ -18,6 +18,8 @@ pub struct Render {
     pub max_depth: Option<u32>,
     /// Rays of ray trees that weigh less are not traced, 0 to 1.
     pub cutoff: f64,
+    /// Which points of the film a pixel is the mean of.
+    pub filter: Filter,
     /// Start of the random numbers.
     pub seed: u64,
     /// How light is followed; none leaves it to what the scene has.
@@ -26,6 +28,17 @@ pub struct Render {
     pub branching: Branching,
     /// What glass does to shadow rays.
     pub shadow: Shadow,
+}
+
+/// Which points of the film a pixel is the mean of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Filter {
+    /// Those of its square.
+    Box,
+    /// Falling to the middles of its neighbours.
+    Tent,
+    /// A bell over three pixels.
+    BlackmanHarris,
 }
 
 /// How light is followed.

@@ -5,7 +5,7 @@ use vitrum_math::DVec3;
 
 use super::super::schema::{self, SMALLEST};
 use super::super::{
-    Background, Branching, Camera, Integrator, Lens, MAX_PIXELS, Name, Output, Render, Shadow, Tone,
+    Background, Branching, Camera, Filter, Integrator, Lens, MAX_PIXELS, Name, Output, Render, Shadow, Tone,
 };
 use super::{Context, Fields, Problem, Source, Span, value};
 
@@ -19,6 +19,10 @@ pub(super) fn render(cx: &mut Context<'_>, table: &DeTable<'_>, span: Span) -> O
     let max_depth = fields.small_integer("max_depth");
     let cutoff = fields.number("cutoff");
     let seed = fields.integer("seed");
+    let filter = fields.choice(
+        "filter",
+        &[("box", Filter::Box), ("tent", Filter::Tent), ("blackman-harris", Filter::BlackmanHarris)],
+    );
     let integrator =
         fields.choice("integrator", &[("whitted", Integrator::Whitted), ("path", Integrator::Path)]);
     let branching = fields.choice(
@@ -47,6 +51,7 @@ pub(super) fn render(cx: &mut Context<'_>, table: &DeTable<'_>, span: Span) -> O
         spp: spp?,
         max_depth,
         cutoff: cutoff?,
+        filter: filter?,
         seed: seed?,
         integrator,
         branching: branching?,

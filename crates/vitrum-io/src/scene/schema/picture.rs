@@ -56,6 +56,13 @@ pub const RENDER: Table = Table {
             .range(Range::Whole(0, u64::MAX))
             .default("0"),
         Key::new(
+            "filter",
+            Kind::Choice(&["box", "tent", "blackman-harris"]),
+            "which points of the film a pixel is the mean of: those of its square, or also of its neighbours with less weight, which \
+             is softer and shows less aliasing",
+        )
+        .default("\"box\""),
+        Key::new(
             "integrator",
             Kind::Choice(&["whitted", "path"]),
             "how light is followed: `whitted` traces the ray tree of mirrors and glass, `path` follows light on all its ways",
