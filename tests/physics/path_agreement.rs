@@ -1,5 +1,5 @@
 //! Every way of following light gives the same picture: each branching, light found by asking, by meeting and by both, numbers
-//! that fill the square and numbers that don't. Six scenes, compared by tiles of the picture.
+//! that fill the square and numbers that don't. Seven scenes, compared by tiles of the picture.
 
 use std::path::Path;
 use vitrum::io::load::scene_text;
@@ -7,12 +7,13 @@ use vitrum::math::Sequence;
 use vitrum::tracer::{Branching, LightSampling, Scene, Settings, render};
 use vitrum_testkit::Moments;
 
-const SCENES: [(&str, &str); 6] = [
+const SCENES: [(&str, &str); 7] = [
     ("glass on a floor", include_str!("../scenes/glass_on_a_floor.toml")),
     ("rough glass and metal", include_str!("../scenes/rough.toml")),
     ("hollow ball", include_str!("../scenes/hollow_ball.toml")),
     ("pane before a lamp", include_str!("../scenes/pane.toml")),
     ("many lights", include_str!("../scenes/many_lights.toml")),
+    ("lamps of flat faces", include_str!("../scenes/lamps.toml")),
     ("the lecture's materials", include_str!("../scenes/lecture_materials.toml")),
 ];
 
@@ -20,7 +21,7 @@ const TILES: usize = 4;
 const SIZE: usize = 32;
 const SEEDS: u64 = 12;
 
-/// Six scenes, five variants and sixteen tiles are 480 comparisons: in one of a hundred runs one of them would be farther off by
+/// Seven scenes, five variants and sixteen tiles are 560 comparisons: in one of a hundred runs one of them would be farther off by
 /// chance than this, in standard errors that come from twelve seeds each (Student's t with 22 degrees of freedom).
 const FARTHEST: f64 = 5.5;
 
@@ -77,6 +78,60 @@ fn a_depth_limit_means_the_same_to_every_way_of_finding_light() {
             }
         }
     }
+}
+
+/// A floor with a glass ball under 24 lights, points and balls that shine; only those that `shines` says, the others are dark.
+fn under_many_lights(shines: impl Fn(usize) -> bool) -> String {
+    let mut text = String::from(
+        "[render]\nintegrator = \"path\"\nspp = 16\n\
+         [camera]\ntype = \"pinhole\"\nposition = [0, 2, 6]\ntarget = [0, 0.5, 0]\nfov = 45\n\
+         [[object]]\nshape = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\n\
+         material = { type = \"phong\", color = 0.6, kd = 0.7, ks = 0.3, exponent = 20 }\n\
+         [[object]]\nshape = \"sphere\"\ncenter = [0, 0.5, 0]\nradius = 0.5\n\
+         material = { type = \"dielectric\", ior = 1.5 }\n",
+    );
+    for light in 0..24 {
+        // Somewhere about the ball, by the golden angle.
+        let turn = 2.4 * light as f64;
+        let (r, y) = (0.9 + 0.1 * light as f64, 0.3 + 0.08 * light as f64);
+        let place = format!("[{}, {y}, {}]", r * libm::cos(turn), r * libm::sin(turn));
+        let bright = if shines(light) { 1.0 + (light % 5) as f64 } else { 0.0 };
+        if light % 2 == 0 {
+            text += &format!(
+                "[[object]]\nname = \"{light}\"\nshape = \"sphere\"\ncenter = {place}\nradius = 0.15\n\
+                 material = {{ type = \"emissive\", radiance = {bright} }}\n"
+            );
+        } else if bright > 0.0 {
+            text += &format!(
+                "[[light]]\nname = \"{light}\"\ntype = \"point\"\nposition = {place}\nintensity = {}\n",
+                0.05 * bright
+            );
+        }
+    }
+    text
+}
+
+/// Light adds up: a picture under many lights, which are found in a tree, is the sum of pictures under few of them at a time,
+/// which are estimated one by one; and it is the same however light is found.
+#[test]
+fn many_lights_are_the_sum_of_few() {
+    let load = |text: &str| scene_text("many lights", text, Path::new("")).expect("a valid scene");
+    let all = load(&under_many_lights(|_| true));
+    let base = Settings { size: [SIZE as u32; 2], ..all.settings };
+    let together = tiles(&all.scene, &base, TILES);
+    let parts = [0, 1, 2, 3].map(|part| {
+        let some = load(&under_many_lights(|light| light / 6 == part));
+        tiles(&some.scene, &base, TILES)
+    });
+    for (tile, together) in together.iter().enumerate() {
+        let sum: f64 = parts.iter().map(|part| part[tile].mean()).sum();
+        let squares = |m: &Moments| m.standard_error() * m.standard_error();
+        let error = (squares(together) + parts.iter().map(|part| squares(&part[tile])).sum::<f64>()).sqrt();
+        let z = (together.mean() - sum) / error;
+        assert!(z.abs() < FARTHEST, "tile {tile}: {together:?} {sum}");
+    }
+    let lights = Settings { light_sampling: LightSampling::Lights, ..base };
+    assert_same("many lights in a tree", &all.scene, &together, &lights);
 }
 
 fn assert_same(name: &str, scene: &Scene, reference: &[Moments], settings: &Settings) {

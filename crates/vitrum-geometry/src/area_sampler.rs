@@ -3,17 +3,18 @@
 //! | surface | how | density |
 //! |---|---|---|
 //! | sphere, from outside | a direction of the cone that it fills | uniform in solid angle |
-//! | rectangle | a direction of the spherical rectangle that it fills (C. Ureña, M. Fajardo and A. King, An Area-Preserving Parametrization for Spherical Rectangles, 2013) | uniform in solid angle; in area where it fills less than [`SMALL`] |
-//! | everything else | a point, patch by patch in proportion to weight and area | uniform in area within a patch |
+//! | rectangle | a direction of the spherical rectangle that it fills (C. Ureña, M. Fajardo and A. King, An Area-Preserving Parametrization for Spherical Rectangles, 2013); below [`SMALL`], as a patch | uniform in solid angle |
+//! | everything else | a point of one of its flat patches | see `patches.rs` |
 //!
 //! Densities are per steradian, seen from the point that looks. What can't be sampled (an infinite plane, stretched spheres,
 //! cylinders) has no sampler.
 
 use crate::interaction::SurfaceInteraction;
 use crate::object::Object;
+use crate::patches::{Outline, Patch, Patches};
 use crate::shape::{Rectangle, Shape, Sphere};
 use std::f64::consts::{PI, TAU};
-use vitrum_math::{DVec3, Frame, Transform, concentric_disk};
+use vitrum_math::{Bounds, DVec3, Frame};
 
 /// Below this solid angle a spherical rectangle is lost among the roundings of the four angles that it is the excess of.
 const SMALL: f64 = 1e-3;
@@ -35,15 +36,47 @@ pub struct AreaSample {
     pub face: u32,
 }
 
+/// Directions about an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NormalCone {
+    /// Unit vector in the middle.
+    pub axis: DVec3,
+    /// Cosine of the largest angle to it; -1 where there are all.
+    pub cos: f64,
+}
+
+impl NormalCone {
+    /// All directions.
+    const ALL: Self = Self { axis: DVec3::Z, cos: -1.0 };
+
+    /// About the mean of some normals, each with what it counts.
+    pub(crate) fn around(normals: impl Iterator<Item = (DVec3, f64)> + Clone) -> Self {
+        let mean: DVec3 = normals.clone().map(|(normal, counts)| normal * counts).sum();
+        let all: f64 = normals.clone().map(|(_, counts)| counts).sum();
+        // Closed surfaces have no mean but what rounding leaves.
+        if mean.length() <= 1e-6 * all {
+            return Self::ALL;
+        }
+        let axis = mean / mean.length();
+        Self { axis, cos: normals.map(|(normal, _)| normal.dot(axis)).fold(1.0, f64::min) }
+    }
+
+    /// The mean cosine that normals spread over the cone have towards its axis, where they face it.
+    fn mean_cosine(&self) -> f64 {
+        if self.cos >= 0.0 { 0.5 * (1.0 + self.cos) } else { 0.5 / (1.0 - self.cos) }
+    }
+}
+
 /// Chooses points of one object.
 #[derive(Clone, Debug)]
 pub struct AreaSampler {
     kind: Kind,
     area: f64,
     weight: f64,
-    centre: DVec3,
+    bounds: Bounds,
     /// No point is farther from the centre.
     radius: f64,
+    normals: NormalCone,
 }
 
 #[derive(Clone, Debug)]
@@ -75,10 +108,14 @@ impl AreaSampler {
                 (area, area * weight(0))
             }
             Kind::Rectangle(r) => (r.extent[0] * r.extent[1], r.extent[0] * r.extent[1] * weight(0)),
-            Kind::Patches(patches) => (patches.all.iter().map(|p| p.patch.area()).sum(), patches.total),
+            Kind::Patches(patches) => (patches.area(), patches.weight()),
         };
-        let (centre, radius) = (bounds.centre(), bounds.extent().length() * 0.5);
-        (weight > 0.0 && weight.is_finite()).then_some(Self { kind, area, weight, centre, radius })
+        let (radius, normals) = match &kind {
+            Kind::Sphere { sphere, .. } => (sphere.radius(), NormalCone::ALL),
+            Kind::Rectangle(r) => (bounds.extent().length() * 0.5, NormalCone { axis: r.ng, cos: 1.0 }),
+            Kind::Patches(patches) => (bounds.extent().length() * 0.5, patches.normals()),
+        };
+        (weight > 0.0 && weight.is_finite()).then_some(Self { kind, area, weight, bounds, radius, normals })
     }
 
     /// Area, square metres.
@@ -93,7 +130,22 @@ impl AreaSampler {
 
     /// A ball around everything that may be chosen: centre and radius, metres.
     pub fn ball(&self) -> (DVec3, f64) {
-        (self.centre, self.radius)
+        (self.bounds.centre(), self.radius)
+    }
+
+    /// A box around it.
+    pub fn bounds(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    /// The outward normals of what may be chosen.
+    pub fn normals(&self) -> NormalCone {
+        self.normals
+    }
+
+    /// Weight times area as it looks from far away: along the axis of the normals, roughly, and of a sphere from everywhere.
+    pub fn intensity(&self) -> f64 {
+        self.weight * self.normals.mean_cosine()
     }
 
     /// A point of the surface for a point of the unit square; `None` where it sees nothing of it.
@@ -109,32 +161,30 @@ impl AreaSampler {
     /// The density with which [`sample`](Self::sample) chooses, for `from`, the point `hit` of this object.
     #[inline]
     pub fn pdf(&self, from: DVec3, hit: &SurfaceInteraction) -> f64 {
-        let per_area = match &self.kind {
+        match &self.kind {
             Kind::Sphere { sphere, .. } => match cone(sphere, from) {
-                Some(cone) => return cone.density(),
-                None => 1.0 / self.area,
+                Some(cone) => cone.density(),
+                None => per_solid_angle(1.0 / self.area, hit.point - from, hit.ng),
             },
             Kind::Rectangle(rectangle) => match rectangle.seen_from(from).solid_angle() {
-                Some(solid_angle) => return 1.0 / solid_angle,
-                None => 1.0 / self.area,
+                Some(solid_angle) => 1.0 / solid_angle,
+                None => rectangle.patch().seen_from(from).density_at(from, hit),
             },
-            Kind::Patches(patches) => patches.density(hit.face),
-        };
-        let offset = hit.point - from;
-        per_solid_angle(per_area, offset, hit.ng)
+            Kind::Patches(patches) => patches.pdf(from, hit),
+        }
     }
 }
 
 /// A density per area as one per steradian; infinite for a surface seen edge on.
 #[inline]
-fn per_solid_angle(per_area: f64, offset: DVec3, normal: DVec3) -> f64 {
+pub(crate) fn per_solid_angle(per_area: f64, offset: DVec3, normal: DVec3) -> f64 {
     let squared = offset.dot(offset);
     per_area * squared * squared.sqrt() / offset.dot(normal).abs()
 }
 
 /// A sample of a point that was chosen by area; `None` where the density is not finite.
 #[inline]
-fn by_area(from: DVec3, point: DVec3, ng: DVec3, per_area: f64, face: u32) -> Option<AreaSample> {
+pub(crate) fn by_area(from: DVec3, point: DVec3, ng: DVec3, per_area: f64, face: u32) -> Option<AreaSample> {
     let offset = point - from;
     let distance = offset.length();
     let pdf = per_solid_angle(per_area, offset, ng);
@@ -256,9 +306,15 @@ impl RightRectangle {
         if let Some(sample) = seen.sample(from, [u, v]) {
             return Some(sample);
         }
+        self.patch().seen_from(from).sample(from, [u, v])
+    }
+
+    /// The same as a patch.
+    #[inline]
+    fn patch(&self) -> Patch {
         let [x, y, _] = self.axes;
-        let point = self.corner + x * (self.extent[0] * u) + y * (self.extent[1] * v);
-        by_area(from, point, self.ng, 1.0 / (self.extent[0] * self.extent[1]), 0)
+        let edges = [x * self.extent[0], y * self.extent[1]];
+        Patch::new(Outline::Parallelogram, self.corner, edges, self.ng, 0)
     }
 }
 
@@ -323,156 +379,6 @@ impl SeenRectangle<'_> {
     }
 }
 
-/// A flat piece of a surface: a corner or centre, and two vectors.
-#[derive(Clone, Copy, Debug)]
-struct Patch {
-    outline: Outline,
-    from: DVec3,
-    edges: [DVec3; 2],
-}
-
-#[derive(Clone, Copy, Debug)]
-enum Outline {
-    Parallelogram,
-    Triangle,
-    Ellipse,
-}
-
-impl Patch {
-    fn area(&self) -> f64 {
-        let [u, v] = self.edges;
-        let parallelogram = u.cross(v).length();
-        match self.outline {
-            Outline::Parallelogram => parallelogram,
-            Outline::Triangle => 0.5 * parallelogram,
-            Outline::Ellipse => PI * parallelogram,
-        }
-    }
-
-    #[inline]
-    fn point(&self, [u, v]: [f64; 2]) -> DVec3 {
-        let [a, b] = match self.outline {
-            Outline::Parallelogram => [u, v],
-            Outline::Triangle => {
-                let root = u.sqrt();
-                [root * (1.0 - v), root * v]
-            }
-            Outline::Ellipse => concentric_disk([u, v]).to_array(),
-        };
-        self.from + self.edges[0] * a + self.edges[1] * b
-    }
-}
-
-#[derive(Clone, Debug)]
-struct Patches {
-    all: Vec<Weighted>,
-    /// The sum of area times weight.
-    total: f64,
-    /// Where the faces of the object stand among the patches.
-    of_face: Vec<Option<u32>>,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Weighted {
-    patch: Patch,
-    ng: DVec3,
-    face: u32,
-    /// Area times weight of this and all before.
-    up_to: f64,
-    /// Density per area with which its points are chosen.
-    density: f64,
-}
-
-impl Patches {
-    fn new(object: &Object, weight: &dyn Fn(u32) -> f64) -> Option<Self> {
-        let identity = Transform::IDENTITY;
-        let to = object.transform().unwrap_or(&identity);
-        let mut all: Vec<Weighted> = Vec::new();
-        let mut total = 0.0;
-        let outlines = outlines(object.shape())?;
-        let mut of_face = vec![None; outlines.len()];
-        for (face, (patch, outward)) in (0u32..).zip(outlines) {
-            let patch = Patch {
-                outline: patch.outline,
-                from: to.world_point(patch.from),
-                edges: patch.edges.map(|e| to.world_vector(e)),
-            };
-            let counts = patch.area() * weight(face);
-            // What is too small to have an area is never hit either.
-            if !(counts > 0.0 && counts.is_finite()) {
-                continue;
-            }
-            let [u, v] = patch.edges;
-            let normal = u.cross(v);
-            let normal = normal / normal.length();
-            // Mirroring turns the product of the edges.
-            let outward = to.world_normal(outward);
-            let ng = if (normal.dot(outward) < 0.0) == object.is_flipped() { normal } else { -normal };
-            total += counts;
-            of_face[face as usize] = Some(all.len() as u32);
-            all.push(Weighted { patch, ng, face, up_to: total, density: weight(face) });
-        }
-        all.iter_mut().for_each(|weighted| weighted.density /= total);
-        (total > 0.0 && total.is_finite()).then_some(Self { all, total, of_face })
-    }
-
-    #[inline]
-    fn sample(&self, from: DVec3, [u, v]: [f64; 2]) -> Option<AreaSample> {
-        let at = u * self.total;
-        let index = self.all.partition_point(|weighted| weighted.up_to <= at).min(self.all.len() - 1);
-        let before = if index == 0 { 0.0 } else { self.all[index - 1].up_to };
-        let Weighted { patch, ng, face, up_to, density } = &self.all[index];
-        let within = ((at - before) / (up_to - before)).clamp(0.0, 1.0 - f64::EPSILON);
-        by_area(from, patch.point([within, v]), *ng, *density, *face)
-    }
-
-    #[inline]
-    fn density(&self, face: u32) -> f64 {
-        let patch = self.of_face.get(face as usize).copied().flatten();
-        patch.map_or(0.0, |patch| self.all[patch as usize].density)
-    }
-}
-
-/// The flat faces of a shape in their order, each with a vector outward; `None` where they are not all flat.
-fn outlines(shape: &Shape) -> Option<Vec<(Patch, DVec3)>> {
-    let patch = |outline, from, edges| Patch { outline, from, edges };
-    Some(match shape {
-        Shape::Rectangle(rectangle) => {
-            let (corner, [u, v]) = rectangle.corner_and_edges();
-            vec![(patch(Outline::Parallelogram, corner, [u, v]), u.cross(v))]
-        }
-        Shape::Disk(disk) => {
-            let frame = Frame::around(disk.normal());
-            let edges = [DVec3::X, DVec3::Y].map(|axis| frame.to_world(axis) * disk.radius());
-            vec![(patch(Outline::Ellipse, disk.centre(), edges), disk.normal())]
-        }
-        Shape::Cuboid(cuboid) => {
-            let (min, max) = cuboid.corners();
-            let extent = max - min;
-            let axes = [DVec3::X, DVec3::Y, DVec3::Z];
-            (0..6)
-                .map(|face| {
-                    let axis = face / 2;
-                    let (u, v) = (axes[(axis + 1) % 3] * extent, axes[(axis + 2) % 3] * extent);
-                    let (corner, outward) = if face % 2 == 1 {
-                        (min + axes[axis] * extent, axes[axis])
-                    } else {
-                        (min, -axes[axis])
-                    };
-                    (patch(Outline::Parallelogram, corner, [u, v]), outward)
-                })
-                .collect()
-        }
-        Shape::Mesh(mesh) => (0..mesh.triangle_count() as u32)
-            .map(|face| {
-                let [a, b, c] = mesh.triangle(face);
-                (patch(Outline::Triangle, a, [b - a, c - a]), (b - a).cross(c - a))
-            })
-            .collect(),
-        Shape::Sphere(_) | Shape::Plane(_) | Shape::Cylinder(_) => return None,
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -481,8 +387,8 @@ mod tests {
     use crate::mesh::{MeshData, TriangleMesh};
     use crate::shape::{Cuboid, Disk};
     use std::sync::Arc;
-    use vitrum_math::{Ray, unit};
-    use vitrum_testkit::Uniform;
+    use vitrum_math::{Ray, Transform, unit};
+    use vitrum_testkit::{SphereGrid, Uniform, chi_square_of_directions, sidak_level};
 
     fn placed(shape: Shape, transform: &Transform) -> Object {
         Object::new(shape, transform, false).expect("valid object")
@@ -594,6 +500,137 @@ mod tests {
             }
             let found = sum / f64::from(edge * edge) / PI;
             assert!((found / factor - 1.0).abs() < 2e-5, "{a} x {b} at {h}: {found} {factor}");
+        }
+    }
+
+    /// The radiance of one that a receiver gets from polygons, over π (J. Lambert, Photometria, 1760): for each edge half the angle
+    /// that it spans, times the cosine between the receiver's normal and the plane of edge and point.
+    fn lambert(from: DVec3, normal: DVec3, polygons: &[Vec<DVec3>]) -> f64 {
+        let edge = |a: DVec3, b: DVec3| {
+            let (a, b) = (unit(a - from), unit(b - from));
+            let across = a.cross(b);
+            0.5 * libm::atan2(across.length(), a.dot(b)) * unit(across).dot(normal)
+        };
+        let around = |corners: &Vec<DVec3>| {
+            let count = corners.len();
+            (0..count).map(|i| edge(corners[i], corners[(i + 1) % count])).sum::<f64>().abs()
+        };
+        polygons.iter().map(around).sum::<f64>() / PI
+    }
+
+    /// What faces the point, of a box and of a stretched rectangle, gives the configuration factor of its polygons. Strata of
+    /// the square that lie across two patches leave an error of about one over their number.
+    #[test]
+    fn patches_give_the_configuration_factor_of_their_outlines() {
+        let (min, max) = (DVec3::new(-0.5, 1.0, -0.3), DVec3::new(0.7, 1.4, 0.9));
+        let cuboid = placed(Shape::Cuboid(Cuboid::new(min, max).expect("valid")), &Transform::IDENTITY);
+        let from = DVec3::new(-2.0, 0.2, 0.1);
+        let normal = unit(DVec3::new(1.0, 0.6, 0.0));
+        let corner = |x: bool, y: bool, z: bool| {
+            let of = |high: bool, axis: usize| if high { max[axis] } else { min[axis] };
+            DVec3::new(of(x, 0), of(y, 1), of(z, 2))
+        };
+        let [f, t] = [false, true];
+        let left = vec![corner(f, f, f), corner(f, f, t), corner(f, t, t), corner(f, t, f)];
+        let below = vec![corner(f, f, f), corner(t, f, f), corner(t, f, t), corner(f, f, t)];
+        let (base, u, v) = (DVec3::new(0.3, 2.0, -0.5), DVec3::new(1.0, 0.4, 0.0), DVec3::new(0.5, 0.0, 1.5));
+        let slanted = placed(rectangle(base, u, v), &Transform::IDENTITY);
+        let outline = vec![base, base + u, base + u + v, base + v];
+        for (object, polygons) in [(cuboid, vec![left, below]), (slanted, vec![outline])] {
+            let sampler = AreaSampler::new(&object, &|_| 1.0).expect("it can be sampled");
+            let expected = lambert(from, normal, &polygons);
+            let edge = 1000;
+            let at = |i: i32| (f64::from(i) + 0.5) / f64::from(edge);
+            let mut sum = 0.0;
+            for i in 0..edge {
+                for j in 0..edge {
+                    let sample = sampler.sample(from, [at(i), at(j) * at(j)]).expect("in view");
+                    sum += sample.towards.dot(normal) / sample.pdf * 2.0 * at(j);
+                }
+            }
+            let found = sum / f64::from(edge * edge) / PI;
+            assert!((found / expected - 1.0).abs() < 1e-4, "{found} {expected}");
+        }
+    }
+
+    /// Directions of samples follow the density of what they hit: of boxes and meshes, whose patches are chosen by what they fill
+    /// of the view, uniform over all of it.
+    #[test]
+    fn directions_follow_their_density() {
+        let all = objects();
+        let tests = [(2, 1.7), (5, 2.2), (7, 2.6)];
+        let level = sidak_level(1e-3, tests.len() as u32);
+        for (number, distance) in tests {
+            let object = all[number].clone();
+            let sampler = AreaSampler::new(&object, &|_| 1.0).expect("it can be sampled");
+            let (centre, _) = sampler.ball();
+            let aggregate = Aggregate::new(vec![object]);
+            let mut away = unit(DVec3::new(1.0, 2.0, -0.8));
+            if sampler.sample(centre + away * distance, [0.5, 0.5]).is_none_or(|s| s.towards.dot(s.ng) >= 0.0)
+            {
+                away = -away;
+            }
+            let from = centre + away * distance;
+            let density = |direction: DVec3| {
+                let query = Query::new(Ray::new(from, direction));
+                let hit = aggregate.closest(&query, &mut Counters::default());
+                hit.map_or(0.0, |hit| sampler.pdf(from, &aggregate.interaction(&query, &hit)))
+            };
+            // The silhouette is where samples may miss by their rounding.
+            let sample = |uniform: &mut Uniform| sampler.sample(from, uniform.pair()).map(|s| s.towards);
+            let outcome =
+                chi_square_of_directions(sample, density, SphereGrid { theta: 20, phi: 40 }, 200_000, 3);
+            assert!(outcome.passes(level), "{number}: {outcome}");
+            assert!((outcome.integral - 1.0).abs() < 1e-3, "{number}: {outcome}");
+        }
+    }
+
+    /// On the plane, far away, next to needles and above what fills half the view: a sample has numbers, faces the point, and lies
+    /// on the patch; and the mean of one over the density is the solid angle, where that is known.
+    #[test]
+    fn extremes_have_numbers() {
+        let triangle = |a: DVec3, b: DVec3, c: DVec3| {
+            let data =
+                MeshData { positions: vec![a, b, c], triangles: vec![[0, 1, 2]], ..MeshData::default() };
+            placed(Shape::Mesh(Arc::new(TriangleMesh::new(data).expect("valid mesh"))), &Transform::IDENTITY)
+        };
+        let (o, x, z) = (DVec3::ZERO, DVec3::X, DVec3::Z);
+        let far = DVec3::new(0.0, 1e6, 0.0);
+        let cases = [
+            // From above, which is outside: the corners go round against the clock.
+            (triangle(o, z, x), far, Some(0.5e-12)),
+            (triangle(o, z * 1e-5, x), DVec3::new(0.5, 1.0, 0.0), None),
+            (triangle(-x * 1e6, z * 1e6, x * 1e6), DVec3::new(0.0, 1e-3, 3e5), Some(TAU)),
+            (triangle(o, z, x), DVec3::new(-1.0, 1e-5, 0.3), None),
+            (triangle(o, z, x), DVec3::new(-1.0, 1e-12, 0.3), None),
+            (triangle(o, z, x), DVec3::new(-1.0, 0.0, 0.3), Some(0.0)),
+            (triangle(o, z, x), DVec3::new(0.2, 0.0, 0.2), Some(0.0)),
+            (triangle(o, z, x), DVec3::ZERO, Some(0.0)),
+            (triangle(o, z, x), DVec3::new(0.2, 1e-13, 0.2), None),
+        ];
+        let mut uniform = Uniform::new(2);
+        for (number, (object, from, solid_angle)) in cases.into_iter().enumerate() {
+            let sampler = AreaSampler::new(&object, &|_| 1.0).expect("it can be sampled");
+            let bounds = object.bounds().expect("it is finite");
+            let count = 10_000;
+            let mut sum = 0.0;
+            for _ in 0..count {
+                let Some(sample) = sampler.sample(from, uniform.pair()) else { continue };
+                assert!(sample.pdf.is_finite() && sample.pdf > 0.0, "{number}: {sample:?}");
+                assert!((sample.towards.length() - 1.0).abs() < 1e-12, "{number}: {sample:?}");
+                assert!(sample.towards.dot(sample.ng) < 0.0, "{number}: {sample:?}");
+                let reach = 1e-9 * bounds.extent().length();
+                let low = sample.point.cmpge(bounds.min - DVec3::splat(reach)).all();
+                assert!(
+                    low && sample.point.cmple(bounds.max + DVec3::splat(reach)).all(),
+                    "{number}: {sample:?}"
+                );
+                sum += 1.0 / sample.pdf;
+            }
+            if let Some(expected) = solid_angle {
+                let found = sum / f64::from(count);
+                assert!((found - expected).abs() <= 1e-5 * expected, "{number}: {found} {expected}");
+            }
         }
     }
 

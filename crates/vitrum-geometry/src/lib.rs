@@ -25,14 +25,16 @@ mod departure;
 mod interaction;
 pub mod mesh;
 mod object;
+mod patches;
 pub mod shape;
 mod solids;
 mod spheres;
+mod spherical_triangle;
 mod uv;
 mod wide;
 
 pub use aggregate::{Aggregate, Counters, Hit};
-pub use area_sampler::{AreaSample, AreaSampler};
+pub use area_sampler::{AreaSample, AreaSampler, NormalCone};
 pub use departure::{Departure, Query};
 pub use interaction::{Side, SurfaceInteraction};
 pub use object::Object;

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use vitrum_io::diagnostic::Span;
 use vitrum_io::load::{self, Loaded};
 use vitrum_io::scene::{self, ColourOrTexture, Material, MaterialChoice, Model, Name, SceneDesc, Shape};
+use vitrum_materials::Metal;
 
 /// All scenes of a folder of the repository, sorted.
 fn scenes(folder: &str) -> Vec<PathBuf> {
@@ -126,5 +127,23 @@ material = { type = "emissive", radiance = 0 }
         ["a light without power is left out", "an emissive object without power lights nothing", "dark.toml:"]
     {
         assert!(said.contains(part), "{said}");
+    }
+}
+
+/// A metal's name stands for its n and k.
+#[test]
+fn a_named_metal_is_its_index() {
+    let of = |index: &str| {
+        let text = format!(
+            "[camera]\ntype = \"pinhole\"\nposition = [0, 0, 5]\ntarget = [0, 0, 0]\nfov = 40\n\
+             [[object]]\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\n\
+             material = {{ type = \"conductor\", {index}, roughness = 0.2 }}\n"
+        );
+        let loaded = load::scene_text("metal.toml", &text, Path::new(".")).expect("a valid scene");
+        loaded.scene.materials()[0].clone()
+    };
+    for metal in Metal::all() {
+        let index = format!("n = {:?}, k = {:?}", metal.n().to_array(), metal.k().to_array());
+        assert_eq!(of(&format!("metal = \"{}\"", metal.name())), of(&index));
     }
 }

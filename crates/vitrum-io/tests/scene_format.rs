@@ -120,6 +120,10 @@ fn a_default_is_what_its_text_says_when_written_out() {
                 // One of three keys is required.
                 short += "ior = 1.5\n";
             }
+            if variant.is_some_and(|variant| variant.name == "conductor") {
+                // Either this, or two others.
+                short += "metal = \"gold\"\n";
+            }
             let mut long = short.clone();
             for key in table.keys_with(variant) {
                 if let KeyDefault::Toml(text) = key.default {
@@ -147,6 +151,7 @@ fn settings_arrive() {
         spp: 4,
         max_depth: Some(0),
         cutoff: 0.0,
+        filter: Filter::Box,
         seed: u64::MAX,
         integrator: Some(Integrator::Whitted),
         branching: Branching::Tree,

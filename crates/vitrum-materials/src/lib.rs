@@ -8,6 +8,8 @@ mod absorption;
 mod image;
 mod index;
 mod material;
+mod metal;
+mod metal_table;
 mod scattering;
 mod texture;
 
@@ -15,5 +17,6 @@ pub use absorption::{Absorption, InvalidAbsorption};
 pub use image::{Encoding, Filter, Image, ImageTexture, InvalidImage, Wrap, srgb_to_linear};
 pub use index::{IndexOfRefraction, InvalidIndex};
 pub use material::{Dielectric, Material, Media, Phong, Transparent};
+pub use metal::Metal;
 pub use scattering::Scattering;
 pub use texture::{Axes, Checker, Texture};

@@ -17,6 +17,7 @@ mod film;
 mod filter;
 mod light;
 mod light_sampler;
+mod light_tree;
 mod path;
 mod plan;
 mod render;

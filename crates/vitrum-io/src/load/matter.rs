@@ -3,7 +3,7 @@
 use super::images::{Images, Refusal};
 use crate::diagnostic::{Diagnostic, Diagnostics, Source};
 use crate::obj::{MtlMap, MtlMaterial, MtlMeaning};
-use crate::scene::{self, ColourOrTexture, Index, Model, Pattern, SceneDesc};
+use crate::scene::{self, ColourOrTexture, Index, MetalIndex, Model, Pattern, SceneDesc};
 use std::collections::BTreeMap;
 use std::path::Path;
 use vitrum_bxdf::{ComplexIndex, Conductor, Ggx, Interface, ThinDielectric};
@@ -240,9 +240,13 @@ impl<'d> Matter<'d> {
                 let interface = between(above, IndexOfRefraction::new(*ior))?;
                 Material::Thin(ThinDielectric { interface, transmittance: *transmittance })
             }
-            Model::Conductor { n, k, outside, roughness } => {
+            Model::Conductor { index, outside, roughness } => {
                 let (above, _) = self.outside(outside.as_ref())?;
-                let index = ComplexIndex::new(*n, *k, above.value()).map_err(|e| e.to_string())?;
+                let (n, k) = match *index {
+                    MetalIndex::Named(metal) => (metal.n(), metal.k()),
+                    MetalIndex::Given { n, k } => (n, k),
+                };
+                let index = ComplexIndex::new(n, k, above.value()).map_err(|e| e.to_string())?;
                 Material::Conductor(Conductor { index, roughness: ggx(*roughness)? })
             }
         })

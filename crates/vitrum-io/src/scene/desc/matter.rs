@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use vitrum_materials::{Encoding, Filter, Wrap};
+use vitrum_materials::{Encoding, Filter, Metal, Wrap};
 use vitrum_math::{DVec2, DVec3, Rgb};
 
 use super::Name;
@@ -173,10 +173,8 @@ pub enum Model {
     },
     /// Metal.
     Conductor {
-        /// Real part of the index.
-        n: Rgb,
-        /// Imaginary part.
-        k: Rgb,
+        /// Its index.
+        index: MetalIndex,
         /// What is outside; none is the scene's medium.
         outside: Option<Name>,
         /// Alpha, 0 to 1.
@@ -186,6 +184,20 @@ pub enum Model {
     Emissive {
         /// W/(m² sr)
         radiance: ColourOrTexture,
+    },
+}
+
+/// Which index a metal has, against vacuum.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MetalIndex {
+    /// That of a metal with a name.
+    Named(Metal),
+    /// Given in numbers.
+    Given {
+        /// Real part.
+        n: Rgb,
+        /// Imaginary part.
+        k: Rgb,
     },
 }
 

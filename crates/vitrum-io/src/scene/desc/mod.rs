@@ -11,7 +11,9 @@ mod object;
 mod picture;
 
 pub use light::{Falloff, Light, LightKind};
-pub use matter::{Absorption, ColourOrTexture, Index, Material, Medium, Model, Pattern, Phong, Texture};
+pub use matter::{
+    Absorption, ColourOrTexture, Index, Material, Medium, MetalIndex, Model, Pattern, Phong, Texture,
+};
 pub use object::{MaterialChoice, Normals, Object, Shape, Step, Transform};
 pub use picture::{Background, Branching, Camera, Filter, Integrator, Lens, Output, Render, Shadow, Tone};
 

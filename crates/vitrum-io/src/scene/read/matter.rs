@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 
 use toml::de::DeTable;
-use vitrum_materials::{Encoding, Filter, Wrap};
+use vitrum_materials::{Encoding, Filter, Metal, Wrap};
 use vitrum_math::Rgb;
 
 use super::super::schema::{self, Realm, Table};
 use super::super::{
-    Absorption, ColourOrTexture, Index, Material, MaterialChoice, Medium, Model, Object, Pattern, Phong,
-    Texture,
+    Absorption, ColourOrTexture, Index, Material, MaterialChoice, Medium, MetalIndex, Model, Object, Pattern,
+    Phong, Texture,
 };
 use super::context::shorten;
 use super::{Context, Fields, Problem, Span, value};
@@ -214,10 +214,34 @@ fn dielectric(fields: &mut Fields<'_, '_>) -> Option<Model> {
 }
 
 fn conductor(fields: &mut Fields<'_, '_>) -> Option<Model> {
+    let metals: Vec<(&str, Metal)> = Metal::all().map(|metal| (metal.name(), metal)).collect();
+    let named = fields.choice("metal", &metals).map(MetalIndex::Named);
     let (n, k) = (fields.colour("n"), fields.colour("k"));
+    let given = n.zip(k).map(|(n, k)| MetalIndex::Given { n, k });
     let outside = fields.reference("outside");
     let roughness = fields.number("roughness");
-    Some(Model::Conductor { n: n?, k: k?, outside, roughness: roughness? })
+    let help = "`metal` names one whose index is known; `n` and `k` give the index of any";
+    match ["metal", "n", "k"].map(|key| fields.has(key)) {
+        [false, false, false] => {
+            let message = "nothing says which metal this is";
+            let label = "expected `metal`, or `n` and `k`";
+            fields.cx.report(Problem::error(fields.span_of("metal"), message, label).help(help));
+        }
+        [true, has_n, has_k] if has_n || has_k => {
+            let second = fields.span_of(if has_n { "n" } else { "k" });
+            let problem = Problem::error(second, "the index of this metal is given twice", "this one, too");
+            let problem = problem.also(fields.span_of("metal"), "it is given here");
+            fields.cx.report(problem.help(help));
+        }
+        [false, has_n, has_k] if has_n != has_k => {
+            let (there, missing) = if has_n { ("n", "k") } else { ("k", "n") };
+            let message = format!("`{there}` is half of an index without `{missing}`");
+            let label = format!("expected `{missing}` beside it");
+            fields.cx.report(Problem::error(fields.span_of(there), message, label).help(help));
+        }
+        _ => {}
+    }
+    Some(Model::Conductor { index: named.or(given)?, outside, roughness: roughness? })
 }
 
 /// Warns of a surface that gives back more light than it gets.

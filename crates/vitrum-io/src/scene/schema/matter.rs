@@ -1,6 +1,7 @@
 //! Media, textures and materials.
 
 use super::{Choice, FARTHEST, Key, Kind, Range, Realm, Table, Variant};
+use vitrum_materials::Metal;
 
 /// `[[medium]]`
 pub const MEDIUM: Table = Table {
@@ -218,11 +219,16 @@ const MODELS: Choice = Choice {
         },
         Variant {
             name: "conductor",
-            meaning: "Metal: reflects by Fresnel's equations for a complex index, and absorbs the rest.",
+            meaning: "Metal: reflects by Fresnel's equations for a complex index, and absorbs the rest. The index is that of a `metal`, or `n` and `k`.",
             keys: &[
+                Key::new("metal", Kind::Choice(Metal::NAMES), "the metal whose measured index this is")
+                    .or("none"),
                 Key::new("n", Kind::Colour, "real part of the index, against vacuum")
-                    .range(Range::Closed(0.001, 100.0)),
-                Key::new("k", Kind::Colour, "imaginary part of the index").range(Range::Closed(0.0, 100.0)),
+                    .range(Range::Closed(0.001, 100.0))
+                    .or("none"),
+                Key::new("k", Kind::Colour, "imaginary part of the index")
+                    .range(Range::Closed(0.0, 100.0))
+                    .or("none"),
                 Key::new("outside", Kind::Reference(Realm::Medium), "the medium outside")
                     .or("`medium` of `[surroundings]`"),
                 ROUGHNESS,
