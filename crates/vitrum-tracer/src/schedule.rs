@@ -170,8 +170,8 @@ fn best(film: &Film, buffer: usize, errors: &[f64], limit: f64) -> Vec<usize> {
     order
 }
 
-/// The largest error of each square and its neighbours, each taken as the mean of three by three: rare bright samples seen
-/// next door are likely here too.
+/// The error of each square, but at least a quarter of the mean of three by three: rare bright samples seen next door are likely
+/// here too.
 fn pooled(film: &Film, errors: &[f64]) -> Vec<f64> {
     let (columns, rows) = film.squares();
     let (columns, rows) = (columns as usize, rows as usize);
@@ -180,7 +180,7 @@ fn pooled(film: &Film, errors: &[f64]) -> Vec<f64> {
         let near = (y.saturating_sub(1)..(y + 2).min(rows))
             .flat_map(move |y| (x.saturating_sub(1)..(x + 2).min(columns)).map(move |x| y * columns + x));
         let (sum, count) = near.fold((0.0, 0.0), |(sum, count), at| (sum + errors[at], count + 1.0));
-        errors[square].max(sum / count)
+        errors[square].max(0.25 * sum / count)
     };
     (0..errors.len()).map(around).collect()
 }
