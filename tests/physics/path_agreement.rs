@@ -4,7 +4,7 @@
 use std::path::Path;
 use vitrum::io::load::scene_text;
 use vitrum::math::Sequence;
-use vitrum::tracer::{Branching, LightSampling, Scene, Settings, render};
+use vitrum::tracer::{Branching, Crop, LightSampling, Scene, Settings, render};
 use vitrum_testkit::Moments;
 
 const SCENES: [(&str, &str); 7] = [
@@ -21,7 +21,7 @@ const TILES: usize = 4;
 const SIZE: usize = 32;
 const SEEDS: u64 = 12;
 
-/// Seven scenes, five variants and sixteen tiles are 560 comparisons: in one of a hundred runs one of them would be farther off by
+/// Seven scenes, six variants and sixteen tiles are 672 comparisons: in one of a hundred runs one of them would be farther off by
 /// chance than this, in standard errors that come from twelve seeds each (Student's t with 22 degrees of freedom).
 const FARTHEST: f64 = 5.5;
 
@@ -51,12 +51,37 @@ fn every_strategy_gives_the_same_picture() {
         let variants = [
             Settings { branching: Branching::One, ..base },
             Settings { branching: Branching::First, ..base },
+            Settings { branching: Branching::Tree, ..base },
             Settings { light_sampling: LightSampling::Lights, ..base },
             Settings { light_sampling: LightSampling::Bsdf, spp: 4 * base.spp, ..base },
             Settings { sequence: Sequence::Independent, ..base },
         ];
         for settings in variants {
             assert_same(name, &loaded.scene, &reference, &settings);
+        }
+    }
+}
+
+/// How a part of a picture branches is found out for it as for the whole, by any number of threads.
+#[test]
+fn a_part_branches_like_the_whole() {
+    let (name, text) = SCENES[0];
+    let loaded = scene_text(name, text, Path::new("")).unwrap_or_else(|e| panic!("{name}: {e}"));
+    let base = Settings { size: [90, 70], spp: 16, branching: Branching::Auto, ..loaded.settings };
+    let whole = render(&loaded.scene, &base, &()).expect("valid settings");
+    let ways: std::collections::BTreeSet<String> =
+        whole.branching.iter().map(|way| format!("{way:?}")).collect();
+    assert!(ways.len() > 1 && !ways.contains("Auto"), "this picture mixes: {ways:?}");
+    assert!(whole.stats.pilot_rays > 0);
+    let image = whole.film.image();
+    for (threads, crop) in [(1, [37, 21, 29, 18]), (2, [0, 0, 8, 8]), (2, [83, 60, 7, 10])] {
+        let [x, y, width, height] = crop;
+        let crop = Some(Crop { x, y, width, height });
+        let part = render(&loaded.scene, &Settings { threads, crop, ..base }, &()).expect("valid settings");
+        let part = part.film.image();
+        for (row, line) in part.chunks_exact(width as usize).enumerate() {
+            let start = (y as usize + row) * 90 + x as usize;
+            assert_eq!(line, &image[start..][..line.len()], "row {row} of {crop:?}");
         }
     }
 }

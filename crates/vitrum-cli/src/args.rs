@@ -120,7 +120,8 @@ pub(crate) struct Render {
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub(crate) size: Option<[u32; 2]>,
 
-    /// Part of the picture to render, in pixels from its upper left corner; its bytes are those of the whole picture
+    /// Part of the picture to render, in pixels from its upper left corner; its bytes are those of the whole picture, unless an
+    /// error or a time ends the render
     #[arg(long, value_name = "X,Y,W,H", value_parser = crop)]
     pub(crate) crop: Option<Crop>,
 
@@ -197,6 +198,8 @@ pub(crate) enum IntegratorChoice {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum BranchingChoice {
+    /// Whichever is best, part by part of the picture
+    Auto,
     /// One, by chance
     One,
     /// All at the first hit, then one
@@ -274,6 +277,7 @@ impl From<SequenceChoice> for Sequence {
 impl From<BranchingChoice> for Branching {
     fn from(choice: BranchingChoice) -> Self {
         match choice {
+            BranchingChoice::Auto => Self::Auto,
             BranchingChoice::One => Self::One,
             BranchingChoice::First => Self::First,
             BranchingChoice::Tree => Self::Tree,

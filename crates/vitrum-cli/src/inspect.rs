@@ -90,6 +90,7 @@ fn method(settings: &Settings) -> String {
         Integrator::Whitted => format!("ray trees, {depth}, cut-off {}", settings.cutoff),
         Integrator::Path => {
             let followed = match settings.branching {
+                Branching::Auto => "as many rays as pay",
                 Branching::One => "one ray",
                 Branching::First => "all rays at the first hit, then one,",
                 Branching::Tree => "all rays that weigh enough",

@@ -43,7 +43,9 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
     }
     let settings = settings(&loaded, arguments);
     check_integrator(&loaded, settings.integrator)?;
-    if arguments.channels.contains(&ChannelChoice::Error) && settings.spp < LEAST_FOR_ERRORS {
+    let is_one_buffer = settings.until.is_none();
+    if arguments.channels.contains(&ChannelChoice::Error) && is_one_buffer && settings.spp < LEAST_FOR_ERRORS
+    {
         return Err(Failure::usage(format!(
             "--channels error: found {} samples per pixel; a standard error takes at least {LEAST_FOR_ERRORS}",
             settings.spp
@@ -57,7 +59,7 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
     let is_limited = arguments.until.is_some() || arguments.time.is_some();
     let samples = u64::from(area.width) * u64::from(area.height) * u64::from(settings.spp);
     let watcher = Watcher::new(
-        (!is_limited).then_some(samples),
+        (!is_limited && film.is_none()).then_some(samples),
         arguments.time,
         arguments.quiet,
         interrupt.clone(),
@@ -91,7 +93,19 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
     let view = ImageView { width: area.width, height: area.height, pixels: &pixels };
     let channels = channels(&rendering, &arguments.channels);
     let metadata = metadata(&settings, rendering.film.samples());
-    image::write(&arguments.output, view, &channels, &metadata, loaded.display)?;
+    if channels.len() < arguments.channels.len() && !arguments.quiet {
+        say("warning: there are too few samples to tell errors; the channels of the error are left out\n");
+    }
+    if let Err(failure) = image::write(&arguments.output, view, &channels, &metadata, loaded.display) {
+        // What was rendered is not lost with the picture.
+        if !is_kept && store.write(&rendering.film).is_ok() {
+            say(&format!(
+                "the samples are kept in {}: mend what follows, and add --resume\n",
+                store.path().display()
+            ));
+        }
+        return Err(failure.into());
+    }
     if let Some(trouble) = store.trouble() {
         say(&format!("warning: a checkpoint could not be kept: {trouble}\n"));
     }
@@ -216,7 +230,8 @@ pub(crate) fn decisive(settings: &Settings) -> Vec<(String, String)> {
         ShadowMode::Opaque => "opaque",
         ShadowMode::Straight => "straight (biased)",
     };
-    let branching = match settings.branching {
+    let branching = match settings.branches() {
+        Branching::Auto => "auto",
         Branching::One => "one",
         Branching::First => "first",
         Branching::Tree => "tree",

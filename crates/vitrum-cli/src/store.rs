@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 use vitrum_io::checkpoint::{self, Checkpoint};
-use vitrum_io::load::{Loaded, Origin};
+use vitrum_io::load::Loaded;
 use vitrum_tracer::{Film, Settings};
 
 /// Rounds that end sooner after the last one that was kept are not kept.
@@ -16,8 +16,8 @@ const INTERVAL: Duration = Duration::from_secs(10);
 /// Where the film of a picture is kept, and what it is made with.
 pub(crate) struct Store {
     path: PathBuf,
-    origin: Origin,
-    settings: Vec<(String, String)>,
+    /// What decides the picture: settings, and the content of the scene.
+    about: Vec<(String, String)>,
     /// When it was last written, and what went wrong.
     last: Mutex<(Instant, Option<String>)>,
 }
@@ -30,10 +30,14 @@ impl Store {
         let mut pairs = decisive(settings);
         let rounds = if settings.until.is_some() { "until an error" } else { "of all pixels" };
         pairs.push(("rounds".to_owned(), rounds.to_owned()));
+        // Now, and not when it is kept: files may change meanwhile.
+        let fingerprint = loaded.origin.fingerprint();
+        let fingerprint =
+            fingerprint.map_err(|e| Failure::running(format!("a file of the scene is gone: {e}")))?;
+        pairs.push(("scene".to_owned(), format!("{fingerprint:016x}")));
         Ok(Self {
             path: output.with_file_name(name),
-            origin: loaded.origin.clone(),
-            settings: pairs,
+            about: pairs,
             last: Mutex::new((crate::render::now(), None)),
         })
     }
@@ -42,18 +46,8 @@ impl Store {
         &self.path
     }
 
-    /// What decides the picture: settings, and the content of the scene.
-    fn about(&self) -> Result<Vec<(String, String)>, Failure> {
-        let fingerprint = self.origin.fingerprint();
-        let fingerprint =
-            fingerprint.map_err(|e| Failure::running(format!("cannot keep a checkpoint: {e}")))?;
-        let mut pairs = self.settings.clone();
-        pairs.push(("scene".to_owned(), format!("{fingerprint:016x}")));
-        Ok(pairs)
-    }
-
     pub(crate) fn write(&self, film: &Film) -> Result<(), Failure> {
-        Ok(checkpoint::write(&self.path, &self.about()?, film)?)
+        Ok(checkpoint::write(&self.path, &self.about, film)?)
     }
 
     /// Keeps the film of a round, now and then. A failure is told at the end.
@@ -73,7 +67,7 @@ impl Store {
     /// The film to go on with.
     pub(crate) fn read(&self) -> Result<Film, Failure> {
         let Checkpoint { about, film } = checkpoint::read(&self.path)?;
-        let ours = self.about()?;
+        let ours = &self.about;
         let differing = ours.iter().find(|pair| !about.contains(pair));
         let other = |key: &str| about.iter().find(|(k, _)| k == key).map_or("none", |(_, value)| value);
         match differing {

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 use std::time::Duration;
-use vitrum_tracer::{Ended, Rendering};
+use vitrum_tracer::{Branching, Ended, Rendering};
 
 /// Where the time went.
 pub(crate) struct Phases {
@@ -76,6 +76,19 @@ pub(crate) fn summary(rendering: &Rendering, is_limited: bool, phases: &Phases, 
     }
     let nodes = stats.nodes() as f64 / stats.samples.max(1) as f64;
     line("tree", format!("{nodes:.2} nodes per sample, deepest {}", stats.deepest));
+    let ways =
+        [(Branching::One, "one ray"), (Branching::First, "all at the first hit"), (Branching::Tree, "all")];
+    let share = |way: Branching| {
+        let count = rendering.branching.iter().filter(|found| **found == way).count();
+        100.0 * count as f64 / rendering.branching.len() as f64
+    };
+    if rendering.branching.iter().any(|way| *way != rendering.branching[0]) {
+        let shares = ways.map(|(way, name)| format!("{name} in {:.0} %", share(way)));
+        line("branching", format!("{} of the picture", shares.join(", ")));
+    }
+    if stats.pilot_rays > 0 {
+        line("pilot", format!("{} rays more found out how to branch", stats.pilot_rays));
+    }
     let given_up = rendering.film.given_up();
     let at_most = rendering.plan.radiance_bound.map_or(String::new(), |bound| {
         format!(

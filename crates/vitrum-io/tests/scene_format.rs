@@ -154,7 +154,7 @@ fn settings_arrive() {
         filter: Filter::Box,
         seed: u64::MAX,
         integrator: Some(Integrator::Whitted),
-        branching: Branching::Tree,
+        branching: Branching::Auto,
         shadow: Shadow::Straight,
     };
     assert_eq!(scene.render, render);

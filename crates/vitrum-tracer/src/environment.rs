@@ -22,6 +22,8 @@ pub struct EnvironmentMap {
     texels: Vec<[f32; 3]>,
     rotation: f64,
     scale: f64,
+    /// Cosines of the upper edges of the bands, and of the lower edge of the last.
+    cosines: Vec<f64>,
 }
 
 /// A picture that is no environment.
@@ -87,7 +89,15 @@ impl EnvironmentMap {
             let count = texels.iter().filter(|texel| is_wrong(texel)).count();
             return Err(EnvironmentError::NoRadiance { count, x: first % width, y: first / width });
         }
-        Ok(Self { width, height, texels, rotation, scale })
+        let cos_above = |band: usize| match band {
+            0 => 1.0,
+            band if band > height => -1.0,
+            band => libm::cos(PI * (band as f64 - 0.5) / height as f64),
+        };
+        let cosines = (0..height + 2).map(cos_above).collect();
+        // The same direction, in a number that angles can be added to.
+        let rotation = libm::fmod(rotation, TAU);
+        Ok(Self { width, height, texels, rotation, scale, cosines })
     }
 
     /// Columns and rows.
@@ -113,7 +123,7 @@ impl EnvironmentMap {
     }
 
     /// The cell that a direction lies in: column and band.
-    #[inline]
+    #[cfg(test)]
     pub(crate) fn cell(&self, direction: DVec3) -> [usize; 2] {
         let Place { column, band, .. } = self.place(direction);
         [column, band]
@@ -125,17 +135,26 @@ impl EnvironmentMap {
     }
 
     /// Cosine of the angle between straight up and the upper edge of a band; the lower edge is that of the next.
+    #[inline]
     pub(crate) fn cos_above(&self, band: usize) -> f64 {
-        if band == 0 {
-            1.0
-        } else if band > self.height {
-            -1.0
-        } else {
-            libm::cos(PI * (band as f64 - 0.5) / self.height as f64)
-        }
+        self.cosines[band]
     }
 
-    /// The direction of a point of a cell: `across` its columns in angle, `down` its band in the cosine, both 0 to 1.
+    /// The radiance from a direction, and the cell that it lies in: column and band.
+    #[inline]
+    pub(crate) fn radiance_and_cell(&self, direction: DVec3) -> (Rgb, [usize; 2]) {
+        let place = self.place(direction);
+        (self.interpolated(place), [place.column, place.band])
+    }
+
+    /// The radiance at a point of a cell: `across` its columns, 0 to 1, in a direction of the cosine `cos_theta`.
+    #[inline]
+    pub(crate) fn radiance_in(&self, [column, band]: [usize; 2], across: f64, cos_theta: f64) -> Rgb {
+        let y = libm::acos(cos_theta.clamp(-1.0, 1.0)) / PI * self.height as f64 - 0.5;
+        self.interpolated(Place { column, band, across, down: y - (band as f64 - 1.0) })
+    }
+
+    /// The direction of a point of the map: columns from the centre of the first texel, and the cosine of the angle from straight up.
     #[inline]
     pub(crate) fn direction(&self, column: f64, cos_theta: f64) -> DVec3 {
         let phi = TAU * ((column + 0.5) / self.width as f64 - 0.5) - self.rotation;
@@ -163,8 +182,18 @@ impl EnvironmentMap {
         let right = if column + 1 == self.width { 0 } else { column + 1 };
         let above = band.saturating_sub(1) * self.width;
         let below = band.min(self.height - 1) * self.width;
-        [above + column, above + right, below + column, below + right]
-            .map(|texel| Rgb::from_array(self.texels[texel].map(f64::from)) * self.scale)
+        [
+            self.texel(above + column),
+            self.texel(above + right),
+            self.texel(below + column),
+            self.texel(below + right),
+        ]
+    }
+
+    #[inline]
+    fn texel(&self, at: usize) -> Rgb {
+        let [r, g, b] = self.texels[at];
+        Rgb::new(f64::from(r), f64::from(g), f64::from(b)) * self.scale
     }
 
     #[inline]

@@ -23,8 +23,9 @@ const LEAST_SHARE: f64 = 0.02;
 const LEAST_PEAK: f64 = 100.0;
 /// It ends where radiance falls below this share of its mean.
 const EDGE: f64 = 0.02;
-/// At most so many are looked for.
+/// At most so many are looked for, among at most so many bright places.
 const MOST_SUNS: usize = 8;
+const MOST_TRIED: usize = 64;
 
 /// A region of an environment that can be asked.
 #[derive(Clone, Debug)]
@@ -32,7 +33,7 @@ struct Part {
     region: Region,
     /// For each band the sum of the weights of it and all before it.
     bands: Vec<f64>,
-    /// For each cell the sum of the weights of it and all before it in its band.
+    /// For each cell the share of it and all before it in the weight of its band.
     cells: Vec<f32>,
     /// Light that it is asked for: radiance, the mean of the channels, times solid angle.
     power: f64,
@@ -77,6 +78,11 @@ impl EnvironmentSampler {
         Self { map, parts }
     }
 
+    /// The map.
+    pub(crate) fn map(&self) -> &EnvironmentMap {
+        &self.map
+    }
+
     /// How many parts there are.
     pub(crate) fn len(&self) -> usize {
         self.parts.len()
@@ -95,19 +101,21 @@ impl EnvironmentSampler {
         let (band, down) = invert(bands, v, |sum| *sum);
         let row = &cells[band * region.columns..][..region.columns];
         let (column, across) = invert(row, u, |sum| f64::from(*sum));
-        let (above, below) =
-            (self.map.cos_above(region.band + band), self.map.cos_above(region.band + band + 1));
-        let towards =
-            self.map.direction((region.column + column) as f64 + across, above + (below - above) * down);
+        let cell = [(region.column + column) % self.map.cells()[0], region.band + band];
+        let (above, below) = (self.map.cos_above(cell[1]), self.map.cos_above(cell[1] + 1));
+        let cos_theta = above + (below - above) * down;
         let solid_angle = TAU / self.map.cells()[0] as f64 * (above - below);
         let pdf = weight(bands, band, |sum| *sum) * share(row, column) / (power * solid_angle);
-        (pdf > 0.0).then(|| Asked { towards, radiance: self.map.radiance(towards), pdf })
+        (pdf > 0.0).then(|| Asked {
+            towards: self.map.direction(cell[0] as f64 + across, cos_theta),
+            radiance: self.map.radiance_in(cell, across, cos_theta),
+            pdf,
+        })
     }
 
-    /// The part that asks for a direction, and the density per steradian with which it does.
+    /// The part that asks for directions of a cell, and the density per steradian with which it does.
     #[inline]
-    pub(crate) fn pdf(&self, direction: DVec3) -> Option<(usize, f64)> {
-        let [column, band] = self.map.cell(direction);
+    pub(crate) fn pdf(&self, [column, band]: [usize; 2]) -> Option<(usize, f64)> {
         let columns = self.map.cells()[0];
         let part = self.parts.iter().position(|part| part.region.contains([column, band], columns))?;
         let Part { region, bands, cells, power, .. } = &self.parts[part];
@@ -236,10 +244,12 @@ impl Grid {
         let (all, _) = self.sum(self.whole());
         let mean = all / (4.0 * PI);
         let mut suns: Vec<Region> = Vec::new();
-        while suns.len() < MOST_SUNS {
+        // The glow around a sun, and what is too large for one.
+        let mut tried: Vec<Region> = Vec::new();
+        while suns.len() < MOST_SUNS && tried.len() < MOST_TRIED {
             let taken = |cell: usize| {
                 let place = [cell % self.columns, cell / self.columns];
-                suns.iter().any(|sun| sun.contains(place, self.columns))
+                suns.iter().chain(&tried).any(|sun| sun.contains(place, self.columns))
             };
             let free = (0..self.radiance.len()).filter(|cell| !taken(*cell));
             let Some(peak) = free.max_by(|a, b| self.radiance[*a].total_cmp(&self.radiance[*b])) else {
@@ -248,23 +258,24 @@ impl Grid {
             if self.radiance[peak] < LEAST_PEAK * mean || self.radiance[peak] == 0.0 {
                 break;
             }
-            let Some(region) = self.grown([peak % self.columns, peak / self.columns]) else { break };
+            let (region, is_small) = self.grown([peak % self.columns, peak / self.columns]);
             let apart = suns.iter().all(|sun| !overlap(*sun, region, self.columns));
-            if !apart || self.sum(region).0 < LEAST_SHARE * all {
-                break;
+            if is_small && apart && self.sum(region).0 >= LEAST_SHARE * all {
+                suns.push(region);
+            } else {
+                tried.push(region);
             }
-            suns.push(region);
         }
         suns
     }
 
-    /// The block around a cell up to where radiance falls; `None` when it grows too large for a sun.
-    fn grown(&self, [column, band]: [usize; 2]) -> Option<Region> {
+    /// The block around a cell up to where radiance falls, or to where it is too large for a sun; and whether it is not.
+    fn grown(&self, [column, band]: [usize; 2]) -> (Region, bool) {
         let mut region = Region { column, columns: 1, band, bands: 1 };
         loop {
             let (light, solid_angle) = self.sum(region);
             if solid_angle > LARGEST_SUN {
-                return None;
+                return (region, false);
             }
             let edge = EDGE * light / solid_angle;
             let bright = |strip: Region| {
@@ -286,7 +297,7 @@ impl Grid {
             } else if columns < self.columns && bright(right) {
                 region.columns += 1;
             } else {
-                return Some(region);
+                return (region, true);
             }
         }
     }
@@ -295,15 +306,17 @@ impl Grid {
     fn part(&self, region: Region, without: &[Region], base: f64) -> Part {
         let mut bands = Vec::with_capacity(region.bands);
         let mut cells = Vec::with_capacity(region.bands * region.columns);
-        let mut power = 0.0;
+        let (mut power, mut shares) = (0.0, Vec::with_capacity(region.columns));
         for band in region.band..region.band + region.bands {
             let mut light = 0.0;
             for column in (region.column..region.column + region.columns).map(|c| c % self.columns) {
                 if !without.iter().any(|other| other.contains([column, band], self.columns)) {
                     light += (self.radiance[band * self.columns + column] - base).max(0.0);
                 }
-                cells.push(light as f32);
+                shares.push(light);
             }
+            // As shares of the band: single precision has no room for all radiances.
+            cells.extend(shares.drain(..).map(|sum| if light > 0.0 { (sum / light) as f32 } else { 0.0 }));
             power += light * self.solid_angle[band];
             bands.push(power);
         }
@@ -386,13 +399,16 @@ mod tests {
                     for point in points(4096) {
                         let asked = sampler.sample(part, point).expect("there is light everywhere asked for");
                         assert!((asked.towards.length() - 1.0).abs() < 1e-14);
-                        let (found, pdf) = sampler.pdf(asked.towards).expect("it was sampled");
+                        let apart = asked.radiance - map.radiance(asked.towards);
+                        assert!(apart.abs().max_element() < 1e-6 * map.brightest(), "{apart}");
+                        let (found, pdf) =
+                            sampler.pdf(sampler.map.cell(asked.towards)).expect("it was sampled");
                         // Rounding may put a direction from the edge of a cell into its neighbour.
                         if found == part && (pdf / asked.pdf - 1.0).abs() > 1e-9 {
                             let near = points(9).any(|[u, v]| {
                                 let by = DVec3::new(u - 0.5, v - 0.5, 0.5 - u) * 1e-12;
                                 sampler
-                                    .pdf(asked.towards + by)
+                                    .pdf(sampler.map.cell(asked.towards + by))
                                     .is_some_and(|(_, p)| (p / asked.pdf - 1.0).abs() < 1e-9)
                             });
                             assert!(near, "{pdf} instead of {}", asked.pdf);
@@ -411,7 +427,7 @@ mod tests {
             let mut sums = vec![0.0; sampler.len()];
             let count = 1 << 20;
             for direction in directions(count) {
-                if let Some((part, pdf)) = sampler.pdf(direction) {
+                if let Some((part, pdf)) = sampler.pdf(sampler.map.cell(direction)) {
                     sums[part] += pdf * 4.0 * PI / f64::from(count);
                 }
             }
@@ -486,7 +502,7 @@ mod tests {
         assert_eq!(EnvironmentSampler::new(of([0.0; 3]), false).len(), 0);
         let even = EnvironmentSampler::new(of([0.5; 3]), false);
         assert_eq!(even.len(), 1);
-        let (_, pdf) = even.pdf(DVec3::new(0.0, libm::cos(FRAC_PI_2), -1.0)).expect("a part");
+        let (_, pdf) = even.pdf(even.map.cell(DVec3::new(0.0, libm::cos(FRAC_PI_2), -1.0))).expect("a part");
         assert!((pdf * 4.0 * PI - 1.0).abs() < 1e-6, "uniform, but for the rounding of the sums");
     }
 }

@@ -8,7 +8,7 @@ use crate::stats::GivenUp;
 use vitrum_math::{NodeKey, Purpose, Rgb, SampleAddress, Sequence};
 
 /// Samples in a block.
-const BLOCK: u32 = 8;
+pub(crate) const BLOCK: u32 = 8;
 
 /// The sum of a range of one pixel's samples that starts at a multiple of its own size's power of two: blocks enter as
 /// leaves, equal neighbours merge.
@@ -61,11 +61,15 @@ impl PixelSum {
     }
 }
 
-/// The goal that comes after `goal`, on the way to `last`: each round is a whole subtree, as large as all before it, so that a
-/// picture stopped between two of them has the same number of samples everywhere, and the sums still follow the tree.
+/// The goal that comes after `goal`, on the way to `last`, never less: each round is a whole subtree, as large as all before it, so
+/// that a picture stopped between two of them has the same number of samples everywhere, and the sums still follow the tree.
 pub(crate) fn next_goal(goal: u32, last: u32) -> u32 {
-    if goal == 0 { BLOCK.min(last) } else { goal.saturating_mul(2).min(last) }
+    let next = if goal == 0 { BLOCK } else { goal.saturating_mul(2) };
+    next.min(last).max(goal)
 }
+
+/// No film has more samples in a pixel.
+const MOST_SAMPLES: u32 = 1 << 30;
 
 /// Edge of the squares of pixels, at multiples of itself in the whole image, that have the same number of samples.
 pub(crate) const SQUARE: u32 = 8;
@@ -117,7 +121,7 @@ pub struct Pixel {
 pub struct ErrorEstimate {
     /// The estimate.
     pub rel_mse: f64,
-    /// An interval that holds it with a probability of 90 %, from the differences between squares of the image.
+    /// An interval that holds it with a probability of roughly 90 %, from the differences between squares of the image.
     pub interval: [f64; 2],
 }
 
@@ -174,8 +178,9 @@ impl Film {
     /// A film of its parts.
     ///
     /// # Errors
-    /// [`FilmError`] where there are not one or two buffers, or a buffer has not the squares and pixels of the area, or a
-    /// pixel more samples than its square is to have.
+    /// [`FilmError`] where there are not one or two buffers, or a buffer has not the squares and pixels of the area, a pixel more
+    /// samples than its square is to have, or numbers that no samples give; and where the only buffer has not the same goal
+    /// everywhere.
     pub fn from_parts(area: Crop, buffers: Vec<Buffer>) -> Result<Self, FilmError> {
         let (squares, pixels) = Self::extent(area).ok_or(FilmError)?;
         let film = Self { area, buffers };
@@ -183,11 +188,22 @@ impl Film {
             let has_all = buffer.goals.len() == squares && buffer.pixels.len() == pixels;
             let within = |(at, pixel): (usize, &Pixel)| {
                 let goal = buffer.goals[film.square_of(at)];
-                pixel.taken <= goal && pixel.counted <= pixel.taken && pixel.last_counted <= pixel.counted
+                let counts = pixel.taken <= goal
+                    && pixel.counted <= pixel.taken
+                    && pixel.last_counted <= pixel.counted
+                    && pixel.rays < 1 << 40;
+                counts && pixel.before.is_finite() && pixel.last.is_finite() && pixel.given_up.is_finite()
             };
             has_all && buffer.pixels.iter().enumerate().all(within)
         };
-        if matches!(film.buffers.len(), 1 | 2) && film.buffers.iter().all(fits) {
+        let goals = |buffer: &Buffer| {
+            let same = film.buffers.len() == 2 || buffer.goals.windows(2).all(|pair| pair[0] == pair[1]);
+            same && buffer.goals.iter().all(|goal| *goal <= MOST_SAMPLES)
+        };
+        if matches!(film.buffers.len(), 1 | 2)
+            && film.buffers.iter().all(goals)
+            && film.buffers.iter().all(fits)
+        {
             Ok(film)
         } else {
             Err(FilmError)
@@ -291,33 +307,39 @@ impl Film {
     }
 
     /// The standard error of each pixel and channel, row by row: the root of the mean of its squares over the pixel and its
-    /// neighbours, since one difference alone tells little. `None` before the second round.
+    /// neighbours, since one difference alone tells little. Zero where none of them tells; `None` where no pixel does: one buffer
+    /// takes two rounds, two take one.
     pub fn standard_error(&self) -> Option<Vec<[f32; 3]>> {
         let (width, height) = (self.area.width as usize, self.area.height as usize);
-        let variances: Option<Vec<Rgb>> = (0..width * height).map(|at| self.variance(at)).collect();
-        let variances = variances?;
+        let variances: Vec<Option<Rgb>> = (0..width * height).map(|at| self.variance(at)).collect();
+        if variances.iter().all(Option::is_none) {
+            return None;
+        }
         let pooled = |at: usize| {
             let (x, y) = (at % width, at / width);
             let rows = y.saturating_sub(1)..(y + 2).min(height);
             let columns = x.saturating_sub(1)..(x + 2).min(width);
-            let count = (rows.len() * columns.len()) as f64;
             let near = rows.flat_map(|y| columns.clone().map(move |x| y * width + x));
-            let sum = near.fold(Rgb::ZERO, |sum, at| sum + variances[at]);
-            (sum / count).to_array().map(|v| v.sqrt() as f32)
+            let known = near.filter_map(|at| variances[at]);
+            let (sum, count) = known.fold((Rgb::ZERO, 0.0), |(sum, count), v| (sum + v, count + 1.0));
+            (sum / f64::max(count, 1.0)).to_array().map(|v| v.sqrt() as f32)
         };
         Some((0..width * height).map(pooled).collect())
     }
 
-    /// Mean of a value over the pixels of each square; none where a pixel has none.
+    /// Mean of a value over those pixels of each square that have one, zero where none has; `None` where no pixel of all has.
     fn by_square(&self, value: impl Fn(usize) -> Option<f64>) -> Option<Vec<f64>> {
         let (columns, rows) = self.squares();
         let mut sums = vec![(0.0, 0.0); columns as usize * rows as usize];
         for at in 0..self.buffers[0].pixels.len() {
-            let (sum, count) = &mut sums[self.square_of(at)];
-            *sum += value(at)?;
-            *count += 1.0;
+            if let Some(value) = value(at) {
+                let (sum, count) = &mut sums[self.square_of(at)];
+                *sum += value;
+                *count += 1.0;
+            }
         }
-        Some(sums.into_iter().map(|(sum, count)| sum / count).collect())
+        let any = sums.iter().any(|(_, count)| *count > 0.0);
+        any.then(|| sums.into_iter().map(|(sum, count)| sum / f64::max(count, 1.0)).collect())
     }
 
     /// For each square the error of the image.
@@ -343,7 +365,7 @@ impl Film {
         costs
     }
 
-    /// The error of the image; `None` before the second round.
+    /// The error of the image; `None` where there are too few samples: one buffer takes two rounds, two take one.
     pub fn error(&self) -> Option<ErrorEstimate> {
         const RESAMPLES: u32 = 200;
         let errors = self.errors()?;
@@ -422,6 +444,7 @@ mod tests {
         assert_eq!(goals(100), [8, 16, 32, 64, 100]);
         assert_eq!(goals(5), [5]);
         assert_eq!(goals(16), [8, 16]);
+        assert_eq!(next_goal(64, 32), 64, "what has been taken stays");
     }
 
     /// The tree of a whole range is the sum of the trees of its rounds, to the last bit.

@@ -19,6 +19,7 @@ mod light;
 mod light_sampler;
 mod light_tree;
 mod path;
+mod pilot;
 mod plan;
 mod render;
 mod scene;

@@ -17,7 +17,7 @@ use crate::scene::Scene;
 use crate::settings::{Integrator, LightSampling, Settings};
 use std::sync::Arc;
 use vitrum_geometry::{AreaSampler, SurfaceInteraction};
-use vitrum_materials::{Material, Texture};
+use vitrum_materials::Material;
 use vitrum_math::{DVec3, Rgb};
 
 /// More lights than this are not estimated one by one. With as many, a tree has 0.86 to 0.94 of the efficiency.
@@ -153,11 +153,11 @@ impl LightSampler {
         Some(sampler.pdf(from, hit) * self.probability(scene, from, index))
     }
 
-    /// The density, per steradian, with which a point asks for the background in a direction; `None` if that is no light.
+    /// The density, per steradian, with which a point asks for the background in a cell of its map; `None` if that is no light.
     #[inline]
-    pub(crate) fn pdf_of_background(&self, scene: &Scene, from: DVec3, direction: DVec3) -> Option<f64> {
+    pub(crate) fn pdf_of_background(&self, scene: &Scene, from: DVec3, cell: [usize; 2]) -> Option<f64> {
         let environment = self.environment.as_ref()?;
-        let (part, density) = environment.pdf(direction)?;
+        let (part, density) = environment.pdf(cell)?;
         let index = self.sources.len() - environment.len() + part;
         Some(density * self.probability(scene, from, index))
     }
@@ -331,6 +331,7 @@ mod tests {
     use crate::scene::SceneObject;
     use vitrum_geometry::Object;
     use vitrum_geometry::shape::{Shape, Sphere};
+    use vitrum_materials::Texture;
     use vitrum_math::Transform;
     use vitrum_testkit::Uniform;
 

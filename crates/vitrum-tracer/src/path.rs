@@ -79,12 +79,16 @@ impl Policy for Path {
     }
 
     #[inline]
-    fn escape(walker: &Walker<'_, Self>, node: &Node<Trace>) -> f64 {
-        if walker.plan.environment_lights == 0 {
-            return 1.0;
-        }
+    fn escape(walker: &Walker<'_, Self>, node: &Node<Trace>) -> Rgb {
         let direction = node.query.ray.direction;
-        walker.share_met(node, |from| walker.lights.pdf_of_background(walker.scene, from, direction))
+        match walker.lights.environment() {
+            Some(environment) if walker.plan.environment_lights > 0 => {
+                let (radiance, cell) = environment.map().radiance_and_cell(direction);
+                let asked = |from| walker.lights.pdf_of_background(walker.scene, from, cell);
+                radiance * walker.share_met(node, asked)
+            }
+            _ => walker.scene.background.radiance(direction),
+        }
     }
 }
 
@@ -118,7 +122,8 @@ impl Walker<'_, Path> {
         let Some(Chance { pdf, from }) = node.memory.chance else { return 1.0 };
         match (asked(from), self.settings.light_sampling) {
             (None, _) | (_, LightSampling::Bsdf) => 1.0,
-            (Some(_), LightSampling::Lights) => 0.0,
+            // What is asked for so rarely that no number is left is met instead.
+            (Some(asked), LightSampling::Lights) => f64::from(u8::from(asked == 0.0)),
             (Some(asked), LightSampling::Mis) => pdf / (pdf + asked),
         }
     }
@@ -241,10 +246,11 @@ impl Walker<'_, Path> {
             return;
         }
         let (split, frame) = self.split(surface, scattering);
-        let all = match self.settings.branching {
+        let all = match self.branching {
             Branching::One => false,
             Branching::First => node.depth == 0,
-            Branching::Tree => true,
+            // Which way is best is settled before.
+            Branching::Tree | Branching::Auto => true,
         };
         let share = |child: &Option<Sample<f64>>| {
             child.map_or(0.0, |sample| sample.weight.max_element() * (sample.eta * sample.eta))

@@ -1,13 +1,14 @@
 //! Tiles, samples and threads.
 
-use crate::film::{Buffer, Film, Pixel, PixelSum};
+use crate::film::{Buffer, Film, Pixel, PixelSum, SQUARE};
 use crate::filter::FilterSampler;
 use crate::light_sampler::LightSampler;
 use crate::path::Path;
+use crate::pilot::{self, Findings};
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::schedule::Schedule;
-use crate::settings::{Crop, Integrator, Settings, Target};
+use crate::settings::{Branching, Crop, Integrator, Settings, Target};
 use crate::stats::{Dropped, Stats};
 use crate::walker::{Policy, Walker};
 use crate::whitted::Whitted;
@@ -62,6 +63,9 @@ pub struct Rendering {
     pub stats: Stats,
     /// What the scene needed.
     pub plan: Plan,
+    /// Which of the rays that glass divides were followed, for each square of 8 x 8 pixels of the whole image that the area
+    /// touches, row by row.
+    pub branching: Vec<Branching>,
     /// Why it ended.
     pub ended: Ended,
 }
@@ -78,6 +82,9 @@ pub enum RenderError {
     /// No samples.
     #[error("0 samples per pixel make no picture: ask for at least 1")]
     NoSamples,
+    /// One sample, where an error is to be reached.
+    #[error("1 sample per pixel tells no error: ask for at least 2 with an error to reach")]
+    OneSample,
     /// A part that is empty or not inside the image.
     #[error("the crop of {width} × {height} pixels at ({x}, {y}) is not inside the image", x = .0.x, y = .0.y, width = .0.width, height = .0.height)]
     Crop(Crop),
@@ -145,16 +152,19 @@ fn render_here(scene: &Scene, settings: &Settings, mut film: Film, progress: &dy
     let tiles = tiles(settings);
     let work: Vec<(usize, Crop)> =
         (0..film.buffers().len()).flat_map(|buffer| tiles.iter().map(move |tile| (buffer, *tile))).collect();
+    let filter = FilterSampler::new(settings.filter);
+    let (branching, pilot_rays) = branching(scene, &lights, settings, &plan, &film, &filter, progress);
+    stats.pilot_rays = pilot_rays;
     let mut schedule = Schedule::new(settings);
     loop {
         if let Err(ended) = schedule.next(&mut film, progress) {
-            return Rendering { film, stats, plan, ended };
+            return Rendering { film, stats, plan, branching, ended };
         }
         let render = |(buffer, tile): &(usize, Crop)| {
-            let what = (scene, &lights, settings, &plan);
+            let (what, how) = ((scene, &lights, settings, &plan), (&branching[..], &filter));
             let done = match settings.integrator {
-                Integrator::Whitted => render_tile::<Whitted>(what, &film, *buffer, *tile, progress),
-                Integrator::Path => render_tile::<Path>(what, &film, *buffer, *tile, progress),
+                Integrator::Whitted => render_tile::<Whitted>(what, how, &film, *buffer, *tile, progress),
+                Integrator::Path => render_tile::<Path>(what, how, &film, *buffer, *tile, progress),
             }?;
             progress.advance(done.1.samples, done.1.rays());
             Some(done)
@@ -171,10 +181,77 @@ fn render_here(scene: &Scene, settings: &Settings, mut film: Film, progress: &dy
             stats.merge(tile_stats);
         }
         if done.iter().any(Option::is_none) {
-            return Rendering { film, stats, plan, ended: Ended::Stopped };
+            return Rendering { film, stats, plan, branching, ended: Ended::Stopped };
         }
         progress.keep(&film);
     }
+}
+
+/// How the paths of each square branch, and the rays that it took to find out.
+fn branching(
+    scene: &Scene,
+    lights: &LightSampler,
+    settings: &Settings,
+    plan: &Plan,
+    film: &Film,
+    filter: &FilterSampler,
+    progress: &dyn Progress,
+) -> (Vec<Branching>, u64) {
+    let (columns, rows) = film.squares();
+    let all = |way: Branching| (vec![way; columns as usize * rows as usize], 0);
+    let divides = plan.dielectrics || plan.mirrors || plan.thin_sheets;
+    match settings.branches() {
+        Branching::Auto if settings.integrator == Integrator::Whitted || !divides => {
+            return all(Branching::Tree);
+        }
+        Branching::Auto => {}
+        given => return all(given),
+    }
+    // A square is judged with its neighbours in the whole image, so that a part of it is judged the same.
+    let first = [settings.area().x, settings.area().y].map(|at| at / SQUARE);
+    let whole = settings.size.map(|side| side.div_ceil(SQUARE));
+    let from = first.map(|square| square.saturating_sub(1));
+    let to = [(first[0] + columns + 1).min(whole[0]), (first[1] + rows + 1).min(whole[1])];
+    let wide = to[0] - from[0];
+    let explore = |columns: &[u32], rows: &[u32]| {
+        let row = |row: &u32| {
+            let mut walker = Walker::<Path>::new(scene, lights, settings, plan);
+            // What is stopped now is stopped before the first sample.
+            let mut square = |column: &u32| {
+                if progress.is_stopped() {
+                    return Findings::default();
+                }
+                pilot::explore(&mut walker, filter, [*column, *row])
+            };
+            columns.iter().map(&mut square).collect::<Vec<Findings>>()
+        };
+        let found: Vec<_> = if settings.threads == 1 {
+            rows.iter().map(row).collect()
+        } else {
+            rows.par_iter().map(row).collect()
+        };
+        found.into_iter().flatten().collect::<Vec<Findings>>()
+    };
+    let all_over = |axis: usize| -> Vec<u32> {
+        let count = whole[axis].min(pilot::SURVEYED);
+        (0..count).map(|i| (2 * i + 1) * whole[axis] / (2 * count)).collect()
+    };
+    let surveyed = explore(&all_over(0), &all_over(1));
+    let price = pilot::price(&surveyed);
+    let range = |axis: usize| (from[axis]..to[axis]).collect::<Vec<u32>>();
+    let found = explore(&range(0), &range(1));
+    let judged = |at: u32| {
+        let (column, row) = (first[0] + at % columns, first[1] + at / columns);
+        let mut sum = Findings::default();
+        for y in row.saturating_sub(1).max(from[1])..(row + 2).min(to[1]) {
+            for x in column.saturating_sub(1).max(from[0])..(column + 2).min(to[0]) {
+                sum.add(&found[((y - from[1]) * wide + x - from[0]) as usize]);
+            }
+        }
+        sum.best(price)
+    };
+    let rays = surveyed.iter().chain(&found).map(Findings::rays).sum();
+    ((0..columns * rows).map(judged).collect(), rays)
 }
 
 fn check(settings: &Settings) -> Result<(), RenderError> {
@@ -184,6 +261,9 @@ fn check(settings: &Settings) -> Result<(), RenderError> {
     }
     if settings.spp == 0 {
         return Err(RenderError::NoSamples);
+    }
+    if settings.until.is_some() && settings.spp < 2 {
+        return Err(RenderError::OneSample);
     }
     if let Some(Target::RelMse(limit) | Target::Noise(limit)) = settings.until
         && !(limit > 0.0 && limit.is_finite())
@@ -216,13 +296,13 @@ fn tiles(settings: &Settings) -> Vec<Crop> {
 /// What the present round brings to the pixels of a tile, row by row; `None` when the render is to stop before the tile is done.
 fn render_tile<P: Policy>(
     (scene, lights, settings, plan): (&Scene, &LightSampler, &Settings, &Plan),
+    (branching, filter): (&[Branching], &FilterSampler),
     film: &Film,
     buffer: usize,
     tile: Crop,
     progress: &dyn Progress,
 ) -> Option<(Vec<Pixel>, Stats)> {
     let mut walker = Walker::<P>::new(scene, lights, settings, plan);
-    let filter = FilterSampler::new(settings.filter);
     let mut pixels = Vec::with_capacity(tile.width as usize * tile.height as usize);
     let mut sum = PixelSum::default();
     let seed = settings.seed.wrapping_add(buffer as u64 * OTHER_BUFFER);
@@ -230,7 +310,9 @@ fn render_tile<P: Policy>(
     for y in tile.y..tile.y + tile.height {
         for x in tile.x..tile.x + tile.width {
             sum.clear();
-            let (from, to) = (before[film.place(x, y)].taken, goals[film.square(x, y)]);
+            let square = film.square(x, y);
+            let (from, to) = (before[film.place(x, y)].taken, goals[square]);
+            walker.branching = branching[square];
             let rays = walker.stats.rays();
             for sample in from..to {
                 if progress.is_stopped() {

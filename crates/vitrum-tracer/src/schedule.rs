@@ -6,9 +6,11 @@
 //! With an error to reach, each round doubles the samples of those squares of pixels that gain most for their cost. What has been
 //! averaged must not decide how much of it is averaged (D. Kirk and J. Arvo, Unbiased Sampling Techniques for Image Synthesis,
 //! 1991: dark pixels would end early). So there are two buffers of independent samples, and the errors of each say where the
-//! other goes on; what both decide together is only how many rounds there are.
+//! other goes on. What both decide together is how many rounds there are, and one factor of all errors. By these, and by way of the
+//! other buffer from one round to the one after the next, a sum still has a little say in how long it is: to first order there is no
+//! bias, and none has been found.
 
-use crate::film::{Film, next_goal};
+use crate::film::{BLOCK, Film, next_goal};
 use crate::render::{Ended, Progress};
 use crate::settings::{Settings, Target};
 use std::f64::consts::SQRT_2;
@@ -38,9 +40,15 @@ impl<'s> Schedule<'s> {
             // A round that was stopped comes first.
         } else {
             let affordable = self.affordable(progress);
+            // Where time is limited, a few samples tell what it is good for.
+            let is_unknown = affordable.is_none() && progress.seconds_left().is_some();
             match self.settings.until {
-                None => self.all(film, affordable)?,
-                Some(target) => self.some(film, target, affordable)?,
+                None => self.all(film, affordable, is_unknown)?,
+                Some(target) => {
+                    let few =
+                        f64::from(BLOCK) * film.buffers.len() as f64 * film.buffers[0].pixels.len() as f64;
+                    self.some(film, target, affordable.or(is_unknown.then_some(few)))?;
+                }
             }
         }
         let samples = film.missing();
@@ -57,10 +65,13 @@ impl<'s> Schedule<'s> {
     }
 
     /// All pixels alike.
-    fn all(&self, film: &mut Film, affordable: Option<f64>) -> Result<(), Ended> {
+    fn all(&self, film: &mut Film, affordable: Option<f64>, is_unknown: bool) -> Result<(), Ended> {
         let [buffer] = &mut film.buffers[..] else { unreachable!("an error to reach takes two") };
         let goal = buffer.goals[0];
         let mut next = next_goal(goal, self.settings.spp);
+        if is_unknown {
+            next = next.min(goal.saturating_add(BLOCK));
+        }
         if next == goal {
             return Err(Ended::Samples);
         }
@@ -82,8 +93,13 @@ impl<'s> Schedule<'s> {
         let most = (self.settings.spp / 2).max(1);
         let first = film.buffers[0].goals[0];
         if first < FIRST.min(most) {
+            let next = next_goal(first, most);
+            let samples = 2.0 * f64::from(next - first) * film.buffers[0].pixels.len() as f64;
+            if affordable.is_some_and(|affordable| affordable < samples) {
+                return Err(Ended::Time);
+            }
             for buffer in &mut film.buffers {
-                buffer.goals.fill(next_goal(first, most));
+                buffer.goals.fill(next);
             }
             return Ok(());
         }
@@ -104,11 +120,22 @@ impl<'s> Schedule<'s> {
             return Err(Ended::Error);
         }
         let wanted = [(0, &of_b), (1, &of_a)].map(|(buffer, of_other)| {
-            // The error of the mean of both buffers, if both are like the other one.
-            let errors: Vec<f64> = pooled(film, of_other).iter().map(|error| 0.5 * scale * error).collect();
+            // The error of the mean of both buffers, if the other one were like this one: of as many samples.
+            let (own, other) = (&film.buffers[buffer].goals, &film.buffers[1 - buffer].goals);
+            let ratio = |at: usize| f64::from(other[at]) / f64::from(own[at]);
+            let errors: Vec<f64> = pooled(film, of_other)
+                .iter()
+                .enumerate()
+                .map(|(at, error)| 0.5 * scale * error * ratio(at))
+                .collect();
             match target {
-                Target::RelMse(limit) => best(film, buffer, &errors, limit),
-                Target::Noise(limit) => (0..errors.len()).filter(|at| errors[*at] > limit * limit).collect(),
+                Target::RelMse(limit) => best(film, buffer, &errors, limit, most),
+                Target::Noise(limit) => {
+                    let above = |at: &usize| errors[*at] > limit * limit;
+                    let mut order: Vec<usize> = (0..errors.len()).filter(above).collect();
+                    order.sort_by(|a, b| errors[*b].total_cmp(&errors[*a]).then(a.cmp(b)));
+                    order
+                }
             }
         });
         let (mut any, mut capped, mut late) = (false, false, false);
@@ -132,8 +159,8 @@ impl<'s> Schedule<'s> {
         match (any, late, capped) {
             (true, ..) => Ok(()),
             (false, true, _) => Err(Ended::Time),
-            (false, false, true) => Err(Ended::Samples),
-            (false, false, false) => Err(Ended::Error),
+            (false, false, false) if matches!(target, Target::Noise(_)) => Err(Ended::Error),
+            (false, false, _) => Err(Ended::Samples),
         }
     }
 }
@@ -141,18 +168,23 @@ impl<'s> Schedule<'s> {
 /// The squares whose samples should be doubled on the cheapest way to a mean error of `limit`, those that gain most first.
 ///
 /// Where an error is a variance over a number of samples, and samples have their cost, the best numbers are proportional to the
-/// root of variance over cost; the factor is the one that brings the error to the limit.
-fn best(film: &Film, buffer: usize, errors: &[f64], limit: f64) -> Vec<usize> {
+/// root of variance over cost; the factor is the one that brings the error to the limit. None gets more than `most`.
+fn best(film: &Film, buffer: usize, errors: &[f64], limit: f64, most: u32) -> Vec<usize> {
     let costs = film.costs_of(1 - buffer);
-    let (goals, pixels) = (&film.buffers[1 - buffer].goals, film.buffers[buffer].pixels.len() as f64);
+    let (goals, pixels) = (&film.buffers[buffer].goals, film.buffers[buffer].pixels.len() as f64);
     let samples = |square: usize| f64::from(goals[square]);
     let share = |square: usize| f64::from(costs[square].1) / pixels;
     let per_sample = |square: usize| errors[square] * samples(square);
-    // Rays of a sample.
-    let cost = |square: usize| costs[square].0.max(1) as f64 / (samples(square) * f64::from(costs[square].1));
+    // Rays of a sample, in the other buffer.
+    let taken = &film.buffers[1 - buffer].goals;
+    let cost = |square: usize| {
+        costs[square].0.max(1) as f64 / (f64::from(taken[square]) * f64::from(costs[square].1))
+    };
     let ideal: Vec<f64> = (0..errors.len()).map(|at| (per_sample(at) / cost(at)).sqrt()).collect();
     let error = |factor: f64| -> f64 {
-        let of = |at: usize| share(at) * per_sample(at) / samples(at).max(factor * ideal[at]);
+        let of = |at: usize| {
+            share(at) * per_sample(at) / samples(at).max((factor * ideal[at]).min(f64::from(most)))
+        };
         (0..errors.len()).map(of).sum()
     };
     let (mut low, mut high) = (1e-12_f64, 1e24_f64);
@@ -161,16 +193,16 @@ fn best(film: &Film, buffer: usize, errors: &[f64], limit: f64) -> Vec<usize> {
         if error(middle) > limit { low = middle } else { high = middle }
     }
     // Rounded to the nearest power of two, of all at least the one that is farthest below.
-    let lack = |at: usize| high * ideal[at] / f64::from(film.buffers[buffer].goals[at]);
-    let mut order: Vec<usize> = (0..errors.len()).filter(|at| errors[*at] > 0.0).collect();
+    let lack = |at: usize| high * ideal[at] / samples(at);
+    let grows = |at: &usize| errors[*at] > 0.0 && next_goal(goals[*at], most) > goals[*at];
+    let mut order: Vec<usize> = (0..errors.len()).filter(grows).collect();
     order.sort_by(|a, b| lack(*b).total_cmp(&lack(*a)).then(a.cmp(b)));
     let enough = order.iter().take_while(|at| lack(**at) > SQRT_2).count();
-    let is_reached = order.iter().map(|at| share(*at) * errors[*at]).sum::<f64>() <= limit;
-    order.truncate(if is_reached { 0 } else { enough.max(order.len().div_ceil(64)) });
+    order.truncate(enough.max(order.len().div_ceil(64)));
     order
 }
 
-/// The error of each square, but at least a quarter of the mean of three by three: rare bright samples seen next door are likely
+/// The error of each square, but at least a sixteenth of the mean of three by three: rare bright samples seen next door are likely
 /// here too.
 fn pooled(film: &Film, errors: &[f64]) -> Vec<f64> {
     let (columns, rows) = film.squares();
@@ -180,7 +212,7 @@ fn pooled(film: &Film, errors: &[f64]) -> Vec<f64> {
         let near = (y.saturating_sub(1)..(y + 2).min(rows))
             .flat_map(move |y| (x.saturating_sub(1)..(x + 2).min(columns)).map(move |x| y * columns + x));
         let (sum, count) = near.fold((0.0, 0.0), |(sum, count), at| (sum + errors[at], count + 1.0));
-        errors[square].max(0.25 * sum / count)
+        errors[square].max(sum / (16.0 * count))
     };
     (0..errors.len()).map(around).collect()
 }

@@ -17,12 +17,14 @@ pub enum Integrator {
 /// How many children of a hit on glass or a mirror a path follows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Branching {
+    /// Whichever of the others is best, square by square of 8 x 8 pixels, as a few samples beforehand tell.
+    #[default]
+    Auto,
     /// One, by chance.
     One,
     /// All at the camera ray's hit, then one.
     First,
     /// All, while they weigh enough.
-    #[default]
     Tree,
 }
 
@@ -77,7 +79,7 @@ pub struct Crop {
 pub struct Settings {
     /// Width and height of the whole image, pixels.
     pub size: [u32; 2],
-    /// The part that is rendered; its pixels are the same bytes as in the whole image.
+    /// The part that is rendered; its pixels are the same bytes as in the whole image, but where an error or a time ends the render.
     pub crop: Option<Crop>,
     /// Samples per pixel; with an error to reach, the most that a pixel may get.
     pub spp: u32,
@@ -121,7 +123,7 @@ impl Default for Settings {
             filter: Filter::Box,
             max_depth: None,
             integrator: Integrator::Whitted,
-            branching: Branching::Tree,
+            branching: Branching::Auto,
             light_sampling: LightSampling::Mis,
             sequence: Sequence::Sobol,
             clamp: None,
@@ -137,6 +139,9 @@ impl Default for Settings {
 /// The deepest ray of a ray tree, unless something else is asked for.
 const WHITTED_DEPTH: u32 = 10;
 
+/// Fewer samples per pixel are not worth finding out how to branch.
+const LEAST_FOR_PILOT: u32 = 16;
+
 impl Settings {
     /// A ray deeper than this is not traced: 10 in ray trees and no limit for paths, unless `max_depth` says something else.
     #[inline]
@@ -145,6 +150,14 @@ impl Settings {
             Integrator::Whitted => WHITTED_DEPTH,
             Integrator::Path => u32::MAX,
         })
+    }
+
+    /// How paths branch: of few samples whole trees, where it would be found out by trying.
+    pub fn branches(&self) -> Branching {
+        match self.branching {
+            Branching::Auto if self.spp < LEAST_FOR_PILOT => Branching::Tree,
+            given => given,
+        }
     }
 
     /// The part of the image that is rendered.

@@ -15,6 +15,9 @@ pub struct Stats {
     pub transmitted_rays: u64,
     /// Rays towards lights.
     pub shadow_rays: u64,
+    /// Rays that found out which of the rays that glass divides are worth following. They are in no picture, and in none of the
+    /// other counts.
+    pub pilot_rays: u64,
     /// The largest depth of a ray that was traced.
     pub deepest: u32,
     /// Nodes of paths that met a guard against endless paths and trees: roulette there, never a cut.
@@ -67,6 +70,7 @@ impl Stats {
         self.reflected_rays += other.reflected_rays;
         self.transmitted_rays += other.transmitted_rays;
         self.shadow_rays += other.shadow_rays;
+        self.pilot_rays += other.pilot_rays;
         self.deepest = self.deepest.max(other.deepest);
         self.guarded += other.guarded;
         self.normal_fallbacks += other.normal_fallbacks;

@@ -7,7 +7,7 @@
 use crate::light_sampler::LightSampler;
 use crate::plan::Plan;
 use crate::scene::{Medium, Scene};
-use crate::settings::Settings;
+use crate::settings::{Branching, Settings};
 use crate::stats::Stats;
 use vitrum_bxdf::{Sample, Split, TransportMode};
 use vitrum_geometry::{Query, Side, SurfaceInteraction};
@@ -32,10 +32,10 @@ pub(crate) trait Policy: Sized {
         address: &SampleAddress,
     ) -> Rgb;
 
-    /// The weight of the background, where a ray escapes.
+    /// What a ray that escapes brings.
     #[inline]
-    fn escape(_walker: &Walker<'_, Self>, _node: &Node<Self::Memory>) -> f64 {
-        1.0
+    fn escape(walker: &Walker<'_, Self>, node: &Node<Self::Memory>) -> Rgb {
+        walker.scene.background.radiance(node.query.ray.direction)
     }
 }
 
@@ -58,6 +58,8 @@ pub(crate) struct Walker<'s, P: Policy> {
     pub(crate) lights: &'s LightSampler,
     pub(crate) settings: &'s Settings,
     pub(crate) plan: &'s Plan,
+    /// Which of the rays that glass divides a path follows.
+    pub(crate) branching: Branching,
     pub(crate) stack: Vec<Node<P::Memory>>,
     pub(crate) stats: Stats,
     /// Nodes of the present sample so far, where paths count them.
@@ -74,7 +76,8 @@ impl<'s, P: Policy> Walker<'s, P> {
         plan: &'s Plan,
     ) -> Self {
         let (stack, stats) = (Vec::new(), Stats::default());
-        Self { scene, lights, settings, plan, stack, stats, nodes: 0, given_up: 0.0 }
+        let branching = settings.branching;
+        Self { scene, lights, settings, plan, branching, stack, stats, nodes: 0, given_up: 0.0 }
     }
 
     /// The radiance that arrives along a camera ray.
@@ -98,8 +101,7 @@ impl<'s, P: Policy> Walker<'s, P> {
                 if self.plan.absorption {
                     node.throughput *= self.scene.absorption_of(node.medium).transmittance(f64::INFINITY);
                 }
-                let background = self.scene.background.radiance(node.query.ray.direction);
-                radiance += node.throughput * background * P::escape(self, &node);
+                radiance += node.throughput * P::escape(self, &node);
                 continue;
             };
             let surface = self.scene.aggregate().interaction(&node.query, &hit);

@@ -1,6 +1,6 @@
 //! Errors to reach, limits of time, checkpoints and channels, as a user meets them.
 
-use crate::workplace::{SCENE, Workplace, scene_with};
+use crate::workplace::{CUBE, SCENE, Workplace, scene_with};
 use vitrum_io::image::read_exr;
 
 fn metadata(place: &Workplace, name: &str) -> Vec<(String, String)> {
@@ -13,7 +13,8 @@ fn value<'m>(metadata: &'m [(String, String)], key: &str) -> Option<&'m str> {
 
 #[test]
 fn an_error_to_reach_is_reached_and_said() {
-    let place = Workplace::with_scene();
+    let place = Workplace::new();
+    place.write("scene.toml", scene_with("ior = 1.5", "ior = 1.5, kr = 0.1, kt = 0.5"));
     let arguments = ["render", "scene.toml", "--size", "64x48", "--until", "noise=1%", "-o", "a.exr"];
     let said = place.succeed(&arguments).stderr;
     assert!(said.contains("the error to reach was reached"), "{said}");
@@ -49,6 +50,9 @@ fn a_checkpoint_is_of_one_picture() {
     );
     place.succeed(&[&render[..], &["--checkpoint", "--spp", "16"]].concat());
     assert_eq!(place.names(), ["a.exr", "a.exr.checkpoint", "scene.toml"]);
+    let few = "was made with branching auto, found tree";
+    place.refuse(&[&render[..], &["--resume", "--spp", "4"]].concat(), 2, &[few]);
+    let render = ["render", "scene.toml", "-o", "a.exr", "--spp", "16"];
     place.refuse(
         &[&render[..], &["--resume", "--seed", "3"]].concat(),
         2,
@@ -61,18 +65,35 @@ fn a_checkpoint_is_of_one_picture() {
         &["was made with rounds of all pixels, found until an error"],
     );
     place.write("scene.toml", scene_with("color = 1", "color = 0.5"));
-    place.refuse(&[&render[..], &["--resume"]].concat(), 2, &["the checkpoint is of another scene"]);
+    let resume = [&render[..], &["--resume"]].concat();
+    place.refuse(&resume, 2, &["the checkpoint is of another scene"]);
     place.write("scene.toml", SCENE);
     // More samples than before: those that there are count.
+    let render = ["render", "scene.toml", "-o", "a.exr"];
     place.succeed(&[&render[..], &["--resume", "--spp", "64"]].concat());
     assert_eq!(place.names(), ["a.exr", "scene.toml"]);
     let more = place.read("a.exr");
+    // Fewer than there are change nothing.
+    place.succeed(&[&render[..], &["--checkpoint", "--spp", "64"]].concat());
+    place.succeed(&[&render[..], &["--resume", "--spp", "16"]].concat());
+    assert!(more == place.read("a.exr"), "64 samples stay 64");
     place.succeed(&[&render[..], &["--spp", "64"]].concat());
     assert!(more == place.read("a.exr"), "16 and then 64 samples are 64 samples");
     place.write("a.exr.checkpoint", "no checkpoint");
-    place.refuse(&[&render[..], &["--resume"]].concat(), 2, &["this is not a checkpoint"]);
+    place.refuse(&resume, 2, &["this is not a checkpoint"]);
     place.write("a.exr.checkpoint", "vitrum checkpoint 1\nand no more");
-    place.refuse(&[&render[..], &["--resume"]].concat(), 2, &["the checkpoint is damaged or cut off"]);
+    place.refuse(&resume, 2, &["the checkpoint is damaged or cut off"]);
+}
+
+/// A model whose image is missing shows its plain colour, and can be gone on with all the same.
+#[test]
+fn a_missing_image_of_a_model_keeps_no_checkpoint_away() {
+    let place = Workplace::new();
+    place.write("cube.obj", format!("mtllib cube.mtl\nusemtl paint\nvt 0 0\n{CUBE}"));
+    place.write("cube.mtl", "newmtl paint\nKd 0.5 0.5 0.5\nmap_Kd nowhere.png\n");
+    let render = ["render", "cube.obj", "--material", "file", "--size", "16x12", "-o", "a.exr"];
+    place.succeed(&[&render[..], &["--checkpoint", "--spp", "8"]].concat());
+    place.succeed(&[&render[..], &["--resume", "--spp", "8"]].concat());
 }
 
 #[test]

@@ -22,9 +22,9 @@ pub(super) struct Images {
 }
 
 impl Images {
-    /// The files that were read.
+    /// The files that are shown.
     pub(super) fn files(&self) -> impl Iterator<Item = &PathBuf> {
-        self.read.keys().map(|(path, _)| path)
+        self.read.iter().filter(|(_, read)| read.is_ok()).map(|((path, _), _)| path)
     }
 
     /// The image in a file, called `name` as it is written. `warn` takes what the file gives reason to say, once.

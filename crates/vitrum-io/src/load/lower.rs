@@ -561,6 +561,7 @@ fn settings(render: &scene::Render, integrator: Integrator) -> Settings {
     Settings {
         integrator,
         branching: match render.branching {
+            scene::Branching::Auto => Branching::Auto,
             scene::Branching::One => Branching::One,
             scene::Branching::First => Branching::First,
             scene::Branching::Tree => Branching::Tree,

@@ -53,6 +53,8 @@ pub enum Integrator {
 /// How many of the rays that glass divides a path follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Branching {
+    /// Whichever of the others is best, part by part of the picture.
+    Auto,
     /// One.
     One,
     /// All at the first hit, then one.

@@ -27,7 +27,12 @@ pub(super) fn render(cx: &mut Context<'_>, table: &DeTable<'_>, span: Span) -> O
         fields.choice("integrator", &[("whitted", Integrator::Whitted), ("path", Integrator::Path)]);
     let branching = fields.choice(
         "branching",
-        &[("one", Branching::One), ("first", Branching::First), ("tree", Branching::Tree)],
+        &[
+            ("auto", Branching::Auto),
+            ("one", Branching::One),
+            ("first", Branching::First),
+            ("tree", Branching::Tree),
+        ],
     );
     let shadow = fields.choice("shadow", &[("opaque", Shadow::Opaque), ("straight", Shadow::Straight)]);
     if integrator == Some(Integrator::Path) && shadow == Some(Shadow::Straight) {

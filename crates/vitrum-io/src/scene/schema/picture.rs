@@ -70,11 +70,12 @@ pub const RENDER: Table = Table {
         .or("`whitted` with an ambient light or straight shadows, else `path`"),
         Key::new(
             "branching",
-            Kind::Choice(&["one", "first", "tree"]),
+            Kind::Choice(&["auto", "one", "first", "tree"]),
             "of `path`: whether one of the rays that glass divides is followed, all at the first hit and then one, or all while \
-             they weigh enough; no picture depends on it but in its noise",
+             they weigh enough; `auto` finds out which of these is best, part by part of the picture; no picture depends on it but \
+             in its noise",
         )
-        .default("\"tree\""),
+        .default("\"auto\""),
         Key::new(
             "shadow",
             Kind::Choice(&["opaque", "straight"]),
