@@ -106,7 +106,7 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
         }
         return Err(failure.into());
     }
-    if let Some(trouble) = store.trouble() {
+    if let Some(trouble) = store.trouble().filter(|_| !arguments.quiet) {
         say(&format!("warning: a checkpoint could not be kept: {trouble}\n"));
     }
     kept?;

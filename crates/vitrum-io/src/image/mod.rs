@@ -22,6 +22,9 @@ pub use tone::{Display, Tone};
 
 use crate::atomic;
 
+/// Images with more pixels are not read: a few damaged bytes must not take all memory.
+const MOST_PIXELS: u64 = 1 << 28;
+
 /// The pixels of a picture, borrowed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImageView<'a> {

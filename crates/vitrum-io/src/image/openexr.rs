@@ -16,10 +16,7 @@ use ::exr::prelude::{
     ReadChannels, ReadLayers, SpecificChannels, Vec2, WritableImage,
 };
 
-use super::{Channel, ImageError, ImageRgb, ImageView};
-
-/// Images with more pixels are not read: a few damaged bytes must not take all memory.
-const MOST_PIXELS: usize = 1 << 28;
+use super::{Channel, ImageError, ImageRgb, ImageView, MOST_PIXELS};
 
 /// Primaries and white of ITU-R BT.709.
 const REC709: Chromaticities = Chromaticities {
@@ -130,7 +127,7 @@ pub(super) fn read(path: &Path) -> Result<ImageRgb, ImageError> {
         MetaData::read_from_buffered(open()?, false).map_err(|error| damaged(error.to_string()))?.headers;
     for header in &headers {
         for Vec2(width, height) in [header.layer_size, header.shared_attributes.display_window.size] {
-            if width.checked_mul(height).is_none_or(|pixels| pixels > MOST_PIXELS) {
+            if width.checked_mul(height).is_none_or(|pixels| pixels as u64 > MOST_PIXELS) {
                 return Err(damaged(format!("{width} x {height} pixels, more than {MOST_PIXELS}")));
             }
         }

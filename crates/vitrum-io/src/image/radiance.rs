@@ -9,10 +9,7 @@ use std::path::Path;
 use ::image::ImageDecoder;
 use ::image::codecs::hdr::HdrDecoder;
 
-use super::{ImageError, ImageRgb};
-
-/// Images with more pixels are not read: a few damaged bytes must not take all memory.
-const MOST_PIXELS: u64 = 1 << 28;
+use super::{ImageError, ImageRgb, MOST_PIXELS};
 
 /// Reads all pixels.
 pub(super) fn read(path: &Path) -> Result<ImageRgb, ImageError> {

@@ -12,10 +12,7 @@ use std::path::Path;
 use ::image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits, metadata::Orientation};
 use vitrum_materials::{Encoding, Image, InvalidImage};
 
-use super::{ImageError, openexr, radiance};
-
-/// Images with more pixels are not read: a few damaged bytes must not take all memory.
-const MOST_PIXELS: u64 = 1 << 28;
+use super::{ImageError, MOST_PIXELS, openexr, radiance};
 
 /// Bytes of the largest pixel, red, green, blue and coverage in 16 bits each.
 const PIXEL_BYTES: u64 = 8;
@@ -170,10 +167,6 @@ fn texels(
     let size = [decoded.width(), decoded.height()];
     let is_transparent = is_transparent(&decoded);
     let image = match decoded {
-        DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
-            let pixels = decoded.into_rgb32f().into_raw();
-            Image::from_numbers(name, size, pixels.as_chunks().0.to_vec())
-        }
         DynamicImage::ImageLuma16(_)
         | DynamicImage::ImageLumaA16(_)
         | DynamicImage::ImageRgb16(_)
