@@ -14,7 +14,8 @@ pub(crate) fn transmit(scene: &Scene, ray: Ray, crossings: usize) -> Option<Ray>
         let surface = scene.aggregate().interaction(&query, &hit);
         let scattering = scene.scattering(&hit, surface.point);
         let frame = Frame::around(surface.ns);
-        let child = scattering.split(frame.to_local(surface.wo), TransportMode::Radiance).transmitted?;
+        let child =
+            scattering.specular()?.split(frame.to_local(surface.wo), TransportMode::Radiance).transmitted?;
         query = surface.leave(frame.to_world(child.wi), THROUGH);
     }
     Some(query.ray)

@@ -1,5 +1,8 @@
 //! Every way of following light gives the same picture: each branching, light found by asking, by meeting and by both, numbers
 //! that fill the square and numbers that don't. Seven scenes, compared by tiles of the picture.
+//!
+//! `VITRUM_TIMES=16 cargo test --release --test physics every_strategy -- --nocapture` takes sixteen times the samples, and prints how
+//! large the standard errors of the tiles are.
 
 use std::path::Path;
 use vitrum::io::load::scene_text;
@@ -44,10 +47,13 @@ fn tiles(scene: &Scene, settings: &Settings, count: usize) -> Vec<Moments> {
 
 #[test]
 fn every_strategy_gives_the_same_picture() {
+    let times = vitrum_testkit::times();
     for (name, text) in SCENES {
         let loaded = scene_text(name, text, Path::new("")).unwrap_or_else(|e| panic!("{name}: {e}"));
-        let base = Settings { size: [SIZE as u32; 2], ..loaded.settings };
+        let spp = times * loaded.settings.spp;
+        let base = Settings { size: [SIZE as u32; 2], spp, ..loaded.settings };
         let reference = tiles(&loaded.scene, &base, TILES);
+        println!("{name}: {}", errors(&reference));
         let variants = [
             Settings { branching: Branching::One, ..base },
             Settings { branching: Branching::First, ..base },
@@ -57,9 +63,24 @@ fn every_strategy_gives_the_same_picture() {
             Settings { sequence: Sequence::Independent, ..base },
         ];
         for settings in variants {
-            assert_same(name, &loaded.scene, &reference, &settings);
+            let found = tiles(&loaded.scene, &settings, TILES);
+            let Settings { branching, light_sampling, sequence, .. } = settings;
+            println!("  {branching:?}, {light_sampling:?}, {sequence:?}: {}", errors(&found));
+            assert_same_tiles(name, &settings, &reference, &found);
         }
     }
+}
+
+/// The standard errors of tiles that are not black.
+fn errors(tiles: &[Moments]) -> String {
+    let lit = tiles.iter().filter(|tile| tile.mean() > 0.0);
+    let mut errors: Vec<f64> = lit.map(|tile| 100.0 * tile.standard_error() / tile.mean()).collect();
+    errors.sort_by(f64::total_cmp);
+    format!(
+        "errors of tiles {:.3} % (median), {:.3} % (largest)",
+        errors[errors.len() / 2],
+        errors[errors.len() - 1]
+    )
 }
 
 /// How a part of a picture branches is found out for it as for the whole, by any number of threads.
@@ -161,7 +182,11 @@ fn many_lights_are_the_sum_of_few() {
 
 fn assert_same(name: &str, scene: &Scene, reference: &[Moments], settings: &Settings) {
     let count = if reference.len() == 1 { 1 } else { TILES };
-    for (tile, (a, b)) in reference.iter().zip(tiles(scene, settings, count)).enumerate() {
+    assert_same_tiles(name, settings, reference, &tiles(scene, settings, count));
+}
+
+fn assert_same_tiles(name: &str, settings: &Settings, reference: &[Moments], found: &[Moments]) {
+    for (tile, (a, b)) in reference.iter().zip(found).enumerate() {
         let (ea, eb) = (a.standard_error(), b.standard_error());
         let error = (ea * ea + eb * eb).sqrt();
         // Tiles of the background alone have no error but that of single precision.

@@ -1,6 +1,6 @@
 //! What a surface does to light at one point.
 
-use vitrum_bxdf::{Bxdf, Density, GlossySpecular, Lambertian, Sample, Split, TransportMode, Vector};
+use vitrum_bxdf::{Bxdf, Density, GlossySpecular, Lambertian, Sample, TransportMode, Vector};
 use vitrum_math::{DVec3, Rgb};
 
 /// The models at one point. Directions are in the local frame of `vitrum-bxdf`.
@@ -100,16 +100,6 @@ impl Scattering {
                 (density > 0.0).then_some(Sample { weight, pdf: Density::SolidAngle(density), ..one })
             }
             (None, None) => None,
-        }
-    }
-
-    /// The perfectly specular children.
-    // Always, because what it returns is large and would be copied.
-    #[inline(always)]
-    pub fn split(&self, wo: DVec3, mode: TransportMode) -> Split<f64> {
-        match self.specular() {
-            Some(body) => body.split(wo, mode),
-            None => Split::NONE,
         }
     }
 

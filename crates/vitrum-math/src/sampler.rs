@@ -25,10 +25,8 @@ pub enum Purpose {
     Choice = 3,
     /// Direction that a model scatters to.
     Direction = 4,
-    /// Which light is asked; the second number is not used.
+    /// Which light is asked, and at which of its points.
     Light = 5,
-    /// Which point of it.
-    LightPoint = 6,
 }
 
 /// Where a ray stands in its tree: the root, or a child of another node.
@@ -100,17 +98,56 @@ impl SampleAddress {
     /// Two numbers in [0, 1), stratified together over the sample index.
     #[inline]
     pub fn pair(&self, node: NodeKey, purpose: Purpose) -> [f64; 2] {
+        let of_address = self.of_address(node, purpose);
+        [of_address.first(), of_address.second()]
+    }
+
+    /// The first number of the pair, for less than both.
+    #[inline]
+    pub fn first(&self, node: NodeKey, purpose: Purpose) -> f64 {
+        self.of_address(node, purpose).first()
+    }
+
+    /// The second number of the pair, for less than both.
+    #[inline]
+    pub fn second(&self, node: NodeKey, purpose: Purpose) -> f64 {
+        self.of_address(node, purpose).second()
+    }
+
+    #[inline]
+    fn of_address(&self, node: NodeKey, purpose: Purpose) -> OfAddress {
         let key = mix(self.pixel ^ mix(node.0.wrapping_add(u64::from(purpose as u32) << 56)));
-        if self.sequence == Sequence::Independent {
-            let first = mix(key ^ u64::from(self.index));
-            return [unit_interval(first as u32), unit_interval((first >> 32) as u32)];
+        match self.sequence {
+            Sequence::Sobol => OfAddress::Sobol { key, index: owen_scramble(self.index, key as u32) },
+            Sequence::Independent => OfAddress::Independent(mix(key ^ u64::from(self.index))),
         }
-        let second = mix(key);
-        let index = owen_scramble(self.index, key as u32);
-        [
-            unit_interval(owen_scramble(index.reverse_bits(), (key >> 32) as u32)),
-            unit_interval(owen_scramble(sobol_second(index), second as u32)),
-        ]
+    }
+}
+
+/// What both numbers of an address are made of.
+#[derive(Clone, Copy)]
+enum OfAddress {
+    /// The hash of the address, and the index of the point, shuffled.
+    Sobol { key: u64, index: u32 },
+    /// 64 random bits.
+    Independent(u64),
+}
+
+impl OfAddress {
+    #[inline]
+    fn first(self) -> f64 {
+        unit_interval(match self {
+            Self::Sobol { key, index } => owen_scramble(index.reverse_bits(), (key >> 32) as u32),
+            Self::Independent(bits) => bits as u32,
+        })
+    }
+
+    #[inline]
+    fn second(self) -> f64 {
+        unit_interval(match self {
+            Self::Sobol { key, index } => owen_scramble(sobol_second(index), mix(key) as u32),
+            Self::Independent(bits) => (bits >> 32) as u32,
+        })
     }
 }
 
@@ -220,6 +257,18 @@ mod tests {
         }
         for (i, a) in all.iter().enumerate() {
             assert!(all[..i].iter().all(|b| a != b));
+        }
+    }
+
+    #[test]
+    fn one_number_is_that_of_the_pair() {
+        for sequence in [Sequence::Sobol, Sequence::Independent] {
+            for index in 0..100 {
+                let address = SampleAddress::new(5, 1, 2, index).of_sequence(sequence);
+                let (node, purpose) = (NodeKey::ROOT.scattered(), Purpose::Choice);
+                let both = [address.first(node, purpose), address.second(node, purpose)];
+                assert_eq!(both, address.pair(node, purpose));
+            }
         }
     }
 

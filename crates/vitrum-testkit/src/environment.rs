@@ -41,6 +41,15 @@ pub fn blessing() -> bool {
     variable("VITRUM_BLESS").as_deref() == Some("1")
 }
 
+/// How many times the usual work a test is to do (`VITRUM_TIMES`, 1 where it is not set), where it can do more.
+///
+/// # Panics
+/// If it is no whole number above 0.
+pub fn times() -> u32 {
+    let times = variable("VITRUM_TIMES").map_or(Ok(1), |times| times.parse());
+    times.ok().filter(|times| *times > 0).expect("VITRUM_TIMES is a whole number above 0")
+}
+
 fn assets_of(value: Option<String>) -> Option<PathBuf> {
     let folder = PathBuf::from(value.filter(|value| !value.is_empty() && value != "none")?);
     assert!(

@@ -21,7 +21,7 @@ pub mod uniform;
 pub mod z_test;
 
 pub use chi_square::{ChiSquare, chi_square_of_directions};
-pub use environment::{assets, blessing, files_with_extension};
+pub use environment::{assets, blessing, files_with_extension, times};
 pub use image_difference::ImageDifference;
 pub use significance::sidak_level;
 pub use sphere::{SphereGrid, integrate_sphere};

@@ -359,7 +359,7 @@ mod tests {
     }
 
     fn points(count: u32) -> impl Iterator<Item = [f64; 2]> {
-        (0..count).map(|i| SampleAddress::new(3, 0, 0, i).pair(NodeKey::ROOT, Purpose::LightPoint))
+        (0..count).map(|i| SampleAddress::new(3, 0, 0, i).pair(NodeKey::ROOT, Purpose::Light))
     }
 
     /// Uniformly over all directions.

@@ -21,6 +21,7 @@ mod light_tree;
 mod path;
 mod pilot;
 mod plan;
+mod ray_tree;
 mod render;
 mod scene;
 mod schedule;

@@ -34,6 +34,15 @@ pub(crate) enum Source {
     Environment(usize),
 }
 
+/// A light that was chosen.
+pub(crate) struct Chosen<'l> {
+    pub(crate) source: &'l Source,
+    pub(crate) probability: f64,
+    /// Where the number that chose it lies among those that do, in [0, 1): as evenly spread as these numbers, it finds the point
+    /// of the light.
+    pub(crate) left: f64,
+}
+
 /// The lights of a scene.
 #[derive(Clone, Debug)]
 pub(crate) struct LightSampler {
@@ -126,23 +135,19 @@ impl LightSampler {
         self.environment.as_ref()
     }
 
-    /// A light for `u` in [0, 1), and how probable it is; `None` where no light reaches.
+    /// A light for `u` in [0, 1); `None` where no light reaches.
     #[inline]
-    pub(crate) fn choose(&self, scene: &Scene, from: DVec3, u: f64) -> Option<(&Source, f64)> {
+    pub(crate) fn choose(&self, scene: &Scene, from: DVec3, u: f64) -> Option<Chosen<'_>> {
         if let [only] = &self.sources[..] {
-            return Some((only, 1.0));
+            return Some(Chosen { source: only, probability: 1.0, left: u });
         }
-        if let Some(many) = &self.many {
-            let (index, probability) = many.choose(from, u)?;
-            return Some((&self.sources[index], probability));
-        }
-        let mut estimated = [0.0; MOST_ESTIMATED];
-        let up_to = self.estimate(scene, from, &mut estimated);
-        let total = *up_to.last()?;
-        let at = u * total;
-        let index = up_to.partition_point(|sum| *sum <= at).min(up_to.len() - 1);
-        let share = share(up_to, index);
-        (share > 0.0).then(|| (&self.sources[index], share / total))
+        let (index, probability, left) = if let Some(many) = &self.many {
+            many.choose(from, u)?
+        } else {
+            let mut estimated = [0.0; MOST_ESTIMATED];
+            pick(self.estimate(scene, from, &mut estimated), u)?
+        };
+        Some(Chosen { source: &self.sources[index], probability, left })
     }
 
     /// The density, per steradian, with which a point asks for the point of the object that `hit` is; `None` if that is no light.
@@ -249,19 +254,16 @@ impl Many {
     }
 
     #[inline]
-    fn choose(&self, from: DVec3, u: f64) -> Option<(usize, f64)> {
+    fn choose(&self, from: DVec3, u: f64) -> Option<(usize, f64, f64)> {
         let share_of_tree = self.share_of_tree(from);
         if u < share_of_tree {
             let within = (u / share_of_tree).min(1.0 - f64::EPSILON);
-            let (light, probability) = self.tree.as_ref()?.choose(from, within);
-            return Some((self.of_tree[light] as usize, probability * share_of_tree));
+            let (light, probability, left) = self.tree.as_ref()?.choose(from, within);
+            return Some((self.of_tree[light] as usize, probability * share_of_tree, left));
         }
-        let total = *self.irradiances.last()?;
-        let at = (u - share_of_tree) / (1.0 - share_of_tree) * total;
-        let index = self.irradiances.partition_point(|sum| *sum <= at).min(self.irradiances.len() - 1);
-        let share = share(&self.irradiances, index);
-        let probability = (1.0 - share_of_tree) * share / total;
-        (share > 0.0).then(|| (self.everywhere[index] as usize, probability))
+        let within = ((u - share_of_tree) / (1.0 - share_of_tree)).min(1.0 - f64::EPSILON);
+        let (index, probability, left) = pick(&self.irradiances, within)?;
+        Some((self.everywhere[index] as usize, (1.0 - share_of_tree) * probability, left))
     }
 
     /// How probable a light is, which has a place or has none.
@@ -297,6 +299,17 @@ fn reach(scene: &Scene, source: &Source) -> Option<Reach> {
             }
         },
     }
+}
+
+/// One of those whose sums these are, how probable it is, and where in its share `u` lies; `None` where all are zero.
+#[inline]
+fn pick(up_to: &[f64], u: f64) -> Option<(usize, f64, f64)> {
+    let total = *up_to.last()?;
+    let at = u * total;
+    let index = up_to.partition_point(|sum| *sum <= at).min(up_to.len() - 1);
+    let share = share(up_to, index);
+    let left = (1.0 - (up_to[index] - at) / share).clamp(0.0, 1.0 - f64::EPSILON);
+    (share > 0.0).then_some((index, share / total, left))
 }
 
 /// What the light at `index` adds to the sums.
@@ -361,7 +374,8 @@ mod tests {
         scene
     }
 
-    /// Each light is chosen as often as it says, and together they are one: few lights, many, and many of each part alone.
+    /// Each light is chosen as often as it says, and together they are one: few lights, many, and many of each part alone. What is
+    /// left of evenly spread numbers is evenly spread for each light.
     #[test]
     fn probabilities_are_whole() {
         for (points, balls) in [(3, 4), (30, 40), (0, 17), (30, 0)] {
@@ -370,10 +384,11 @@ mod tests {
             assert_eq!(sampler.len(), points + balls + 2);
             let from = DVec3::new(3.0, -1.0, 2.0);
             let count = 200_000;
-            let mut found = vec![(0.0, 0.0); sampler.len()];
+            let mut found = vec![(0.0, 0.0, Vec::new()); sampler.len()];
             for i in 0..count {
                 let u = (f64::from(i) + 0.5) / f64::from(count);
-                let (source, probability) = sampler.choose(&scene, from, u).expect("light reaches it");
+                let Chosen { source, probability, left } =
+                    sampler.choose(&scene, from, u).expect("light reaches it");
                 let index = match source {
                     Source::Delta(light) => *light,
                     Source::Area { object, .. } => scene.lights.len() + *object as usize,
@@ -381,12 +396,17 @@ mod tests {
                 };
                 found[index].0 += 1.0;
                 found[index].1 = probability;
+                found[index].2.push(left);
             }
-            let sum: f64 = found.iter().map(|(_, probability)| probability).sum();
+            let sum: f64 = found.iter().map(|(_, probability, _)| probability).sum();
             assert!((sum - 1.0).abs() < 1e-12, "{sum}");
-            for (chosen, probability) in found {
+            for (chosen, probability, left) in found {
                 let expected: f64 = probability * f64::from(count);
                 assert!((chosen - expected).abs() <= 1.5 && probability > 0.0, "{chosen} {expected}");
+                for (rank, left) in left.iter().enumerate() {
+                    let even = (rank as f64 + 0.5) / chosen;
+                    assert!((left - even).abs() < 1.5 / chosen, "{left} instead of {even} of {chosen}");
+                }
             }
         }
     }

@@ -225,13 +225,14 @@ impl LightTree {
         self.nodes[0].reach.importance(from)
     }
 
-    /// A light for `u` in [0, 1), and how probable it is. Where none reaches, it is some light.
+    /// A light for `u` in [0, 1), how probable it is, and where in its part of the interval `u` lies, in [0, 1). Where none reaches,
+    /// it is some light.
     #[inline]
-    pub(crate) fn choose(&self, from: DVec3, mut u: f64) -> (usize, f64) {
+    pub(crate) fn choose(&self, from: DVec3, mut u: f64) -> (usize, f64, f64) {
         let (mut place, mut probability) = (0, 1.0);
         loop {
             match self.nodes[place].to {
-                To::Light(light) => return (light as usize, probability),
+                To::Light(light) => return (light as usize, probability, u),
                 To::Second(second) => {
                     let first = self.share_of_first(place, second as usize, from);
                     if u < first {
@@ -400,7 +401,7 @@ mod tests {
                     }
                 }
                 for _ in 0..20 {
-                    let (light, probability) = tree.choose(from, uniform.number());
+                    let (light, probability, _) = tree.choose(from, uniform.number());
                     prop_assert_eq!(probability, probabilities[light]);
                 }
             }

@@ -9,9 +9,10 @@
 //! a depth, unless one is set.
 
 use crate::environment_sampler::Asked;
-use crate::light_sampler::{Source, emitted};
+use crate::light_sampler::{Chosen, Source, emitted};
+use crate::ray_tree::{Children, Node};
 use crate::settings::{Branching, LightSampling};
-use crate::walker::{Node, Policy, Walker, shading_normal, side};
+use crate::walker::{Policy, Walker, shading_normal, side};
 use vitrum_bxdf::{Bxdf, Density, Sample, TransportMode};
 use vitrum_geometry::{Side, SurfaceInteraction};
 use vitrum_materials::Scattering;
@@ -65,6 +66,7 @@ impl Policy for Path {
         surface: &SurfaceInteraction,
         scattering: &Scattering,
         address: &SampleAddress,
+        children: &mut Children<'_, Trace>,
     ) -> Rgb {
         let of_back;
         let scattering = if surface.front {
@@ -74,7 +76,7 @@ impl Policy for Path {
             &of_back
         };
         let light = walker.light(node, surface, scattering, address);
-        walker.children(node, surface, scattering, address);
+        walker.children(node, surface, scattering, address, children);
         light
     }
 
@@ -137,11 +139,13 @@ impl Walker<'_, Path> {
         scattering: &Scattering,
         address: &SampleAddress,
     ) -> Rgb {
-        let [pick, _] = address.pair(node.memory.key, Purpose::Light);
-        let Some((source, probability)) = self.lights.choose(self.scene, surface.point, pick) else {
+        // What chooses the light finds the point of it, too: so the points of each light are spread evenly.
+        let [u, v] = address.pair(node.memory.key, Purpose::Light);
+        let Some(Chosen { source, probability, left: u }) = self.lights.choose(self.scene, surface.point, u)
+        else {
             return Rgb::ZERO;
         };
-        let left = self.settings.deepest().saturating_sub(node.depth);
+        let beyond = self.settings.deepest().saturating_sub(node.depth);
         let (towards, distance, arriving, asked) = match source {
             Source::Delta(light) => {
                 let light = &self.scene.lights[*light];
@@ -151,16 +155,14 @@ impl Walker<'_, Path> {
             }
             _ if self.settings.light_sampling == LightSampling::Bsdf => return Rgb::ZERO,
             // What no ray could meet any more is not asked for either: the weights of both ways belong together.
-            _ if left == 0 => return Rgb::ZERO,
+            _ if beyond == 0 => return Rgb::ZERO,
             Source::Environment(part) => {
-                let point = address.pair(node.memory.key, Purpose::LightPoint);
-                let asked = self.lights.environment().and_then(|all| all.sample(*part, point));
+                let asked = self.lights.environment().and_then(|all| all.sample(*part, [u, v]));
                 let Some(Asked { towards, radiance, pdf }) = asked else { return Rgb::ZERO };
                 (towards, f64::INFINITY, radiance, Some(pdf * probability))
             }
             Source::Area { object, sampler } => {
-                let point = address.pair(node.memory.key, Purpose::LightPoint);
-                let Some(sample) = sampler.sample(surface.point, point) else { return Rgb::ZERO };
+                let Some(sample) = sampler.sample(surface.point, [u, v]) else { return Rgb::ZERO };
                 if sample.towards.dot(sample.ng) >= 0.0 {
                     return Rgb::ZERO;
                 }
@@ -184,7 +186,7 @@ impl Walker<'_, Path> {
         if scattered.max_element() <= 0.0 {
             return Rgb::ZERO;
         }
-        let sheets = if asked.is_some() { left - 1 } else { u32::MAX };
+        let sheets = if asked.is_some() { beyond - 1 } else { u32::MAX };
         scattered * self.unblocked(node, surface, side, towards, distance, sheets)
     }
 
@@ -218,8 +220,10 @@ impl Walker<'_, Path> {
         {
             let sheet = self.scene.aggregate().interaction(&query, &hit);
             let scattering = self.scene.scattering(&hit, sheet.point);
-            let is_thin = matches!(scattering.specular(), Some(Bxdf::ThinDielectric(_)));
-            let through = if is_thin { self.split(&sheet, &scattering).0.transmitted } else { None };
+            let through = match scattering.specular() {
+                Some(thin @ Bxdf::ThinDielectric(_)) => self.split(&sheet, thin).0.transmitted,
+                _ => None,
+            };
             let (Some(through), true) = (through, sheets > 0) else { return Rgb::ZERO };
             share *= through.weight;
             sheets -= 1;
@@ -228,7 +232,7 @@ impl Walker<'_, Path> {
         share
     }
 
-    /// Puts the directions in which a path goes on onto the stack.
+    /// Puts the directions in which a path goes on into the tree.
     #[inline]
     fn children(
         &mut self,
@@ -236,16 +240,17 @@ impl Walker<'_, Path> {
         surface: &SurfaceInteraction,
         scattering: &Scattering,
         address: &SampleAddress,
+        children: &mut Children<'_, Trace>,
     ) {
         let scatters = scattering.answers_lights();
-        if scattering.specular().is_none() {
-            if scatters {
-                let [u, _] = address.pair(node.memory.key, Purpose::Choice);
-                self.go_anywhere(node, surface, scattering, address, u, 1.0);
+        let choice = || address.first(node.memory.key, Purpose::Choice);
+        let Some(body) = scattering.specular() else {
+            if scatters && let Some(way) = anywhere(node, surface, scattering, address, choice()) {
+                self.go_on(node, surface, &way, 1.0, address, children);
             }
             return;
-        }
-        let (split, frame) = self.split(surface, scattering);
+        };
+        let (split, frame) = self.split(surface, body);
         let all = match self.branching {
             Branching::One => false,
             Branching::First => node.depth == 0,
@@ -256,133 +261,134 @@ impl Walker<'_, Path> {
             child.map_or(0.0, |sample| sample.weight.max_element() * (sample.eta * sample.eta))
         };
         let (reflected, transmitted) = (share(&split.reflected), share(&split.transmitted));
-        let anywhere = if scatters { scattering.albedo() } else { 0.0 };
-        let total = reflected + transmitted + anywhere;
-        let [u, _] = address.pair(node.memory.key, Purpose::Choice);
-        let at = u * total;
+        let diffuse = if scatters { scattering.albedo() } else { 0.0 };
+        let total = reflected + transmitted + diffuse;
+        let at = if all { 0.0 } else { choice() * total };
         // All of them, or one in proportion to its share.
         if let Some(child) = &split.reflected
             && (all || at < reflected)
         {
             let probability = if all { 1.0 } else { reflected / total };
-            self.go_on(node, surface, &frame, child, probability, scattering, address);
+            let way = along(node, &frame, child, body);
+            self.go_on(node, surface, &way, probability, address, children);
         }
         if let Some(child) = &split.transmitted
             && (all || reflected <= at && at < reflected + transmitted)
         {
             let probability = if all { 1.0 } else { transmitted / total };
-            self.go_on(node, surface, &frame, child, probability, scattering, address);
+            let way = along(node, &frame, child, body);
+            self.go_on(node, surface, &way, probability, address, children);
         }
         if scatters && (all || reflected + transmitted <= at) {
             let u = if all {
-                u
+                choice()
             } else {
-                ((at - reflected - transmitted) / anywhere).clamp(0.0, 1.0 - f64::EPSILON)
+                ((at - reflected - transmitted) / diffuse).clamp(0.0, 1.0 - f64::EPSILON)
             };
-            let probability = if all { 1.0 } else { anywhere / total };
-            self.go_anywhere(node, surface, scattering, address, u, probability);
+            let probability = if all { 1.0 } else { diffuse / total };
+            if let Some(way) = anywhere(node, surface, scattering, address, u) {
+                self.go_on(node, surface, &way, probability, address, children);
+            }
         }
     }
 
-    /// On along a specular child.
+    /// On along one way, chosen with a probability, unless roulette or the depth limit ends it.
     #[inline]
-    #[expect(clippy::too_many_arguments, reason = "a hit, and what was chosen there")]
     fn go_on(
         &mut self,
         node: &PathNode,
         surface: &SurfaceInteraction,
-        frame: &Frame,
-        child: &Sample<f64>,
+        way: &Way,
         probability: f64,
-        scattering: &Scattering,
         address: &SampleAddress,
+        children: &mut Children<'_, Trace>,
     ) {
-        let side = side(child);
-        let key = match side {
-            Side::Incident => node.memory.key.reflected(),
-            Side::Transmitted => node.memory.key.transmitted(),
-        };
-        // Straight through a sheet, light could still have been asked for.
-        let straight =
-            side == Side::Transmitted && matches!(scattering.specular(), Some(Bxdf::ThinDielectric(_)));
-        let chance = if straight { node.memory.chance } else { None };
-        let direction = frame.to_world(child.wi);
-        let direction = direction * (1.5 - 0.5 * direction.dot(direction));
-        let next = Node {
-            query: surface.leave(direction, side),
-            throughput: node.throughput * child.weight / probability,
-            eta_squared: node.eta_squared * (child.eta * child.eta),
-            depth: node.depth + 1,
-            medium: self.medium(node, surface, side),
-            memory: Trace { key, chance },
-        };
-        self.push_by_roulette(next, side, address);
-    }
-
-    /// On along a direction of the parts that have a density.
-    #[inline]
-    fn go_anywhere(
-        &mut self,
-        node: &PathNode,
-        surface: &SurfaceInteraction,
-        scattering: &Scattering,
-        address: &SampleAddress,
-        uc: f64,
-        probability: f64,
-    ) {
-        let frame = Frame::around(shading_normal(surface));
-        let u = address.pair(node.memory.key, Purpose::Direction);
-        let Some(child) = scattering.sample(frame.to_local(surface.wo), uc, u, TransportMode::Radiance)
-        else {
-            return;
-        };
-        let direction = frame.to_world(child.wi);
-        let direction = direction * (1.5 - 0.5 * direction.dot(direction));
-        let side = side(&child);
-        if surface.side_of(direction) != side {
-            return;
-        }
-        let Density::SolidAngle(pdf) = child.pdf else { unreachable!("it has a density") };
-        let next = Node {
-            query: surface.leave(direction, side),
-            throughput: node.throughput * child.weight / probability,
-            eta_squared: node.eta_squared * (child.eta * child.eta),
-            depth: node.depth + 1,
-            medium: self.medium(node, surface, side),
-            memory: Trace {
-                key: node.memory.key.scattered(),
-                chance: Some(Chance { pdf, from: surface.point }),
-            },
-        };
-        self.push_by_roulette(next, side, address);
-    }
-
-    /// Puts a node onto the stack, unless roulette or the depth limit ends it.
-    #[inline]
-    fn push_by_roulette(&mut self, mut next: PathNode, side: Side, address: &SampleAddress) {
-        let weight = next.throughput.max_element() * next.eta_squared;
-        if next.depth > self.settings.deepest() {
+        let mut throughput = node.throughput * way.weight / probability;
+        let eta_squared = node.eta_squared * (way.eta * way.eta);
+        let depth = node.depth + 1;
+        let weight = throughput.max_element() * eta_squared;
+        if depth > self.settings.deepest() {
             self.given_up += weight;
             return;
         }
         let mut survival = if weight < THRESHOLD { weight / THRESHOLD } else { 1.0 };
         self.nodes += 1;
-        if next.depth >= GUARD_DEPTH || self.stack.len() >= GUARD_WAITING || self.nodes >= GUARD_NODES {
+        if depth >= GUARD_DEPTH || children.waiting() >= GUARD_WAITING || self.nodes >= GUARD_NODES {
             self.stats.guarded += 1;
             survival *= GUARDED_SURVIVAL;
         }
         if survival < 1.0 {
-            let [_, u] = address.pair(next.memory.key, Purpose::Choice);
             // Not less than: what weighs nothing ends.
-            if u >= survival {
+            if address.second(way.trace.key, Purpose::Choice) >= survival {
                 return;
             }
-            next.throughput /= survival;
+            throughput /= survival;
         }
-        match side {
+        match way.side {
             Side::Incident => self.stats.reflected_rays += 1,
             Side::Transmitted => self.stats.transmitted_rays += 1,
         }
-        self.stack.push(next);
+        let next = children.push();
+        next.query = surface.leave(way.direction, way.side);
+        next.throughput = throughput;
+        next.eta_squared = eta_squared;
+        next.depth = depth;
+        next.medium = self.medium(node, surface, way.side);
+        next.memory = way.trace;
     }
+}
+
+/// A way on from a hit.
+struct Way {
+    /// Unit vector.
+    direction: DVec3,
+    side: Side,
+    weight: Rgb,
+    eta: f64,
+    trace: Trace,
+}
+
+/// Along a specular child.
+#[inline]
+fn along(node: &PathNode, frame: &Frame, child: &Sample<f64>, body: &Bxdf<f64>) -> Way {
+    let side = side(child);
+    let key = match side {
+        Side::Incident => node.memory.key.reflected(),
+        Side::Transmitted => node.memory.key.transmitted(),
+    };
+    // Straight through a sheet, light could still have been asked for.
+    let straight = side == Side::Transmitted && matches!(body, Bxdf::ThinDielectric(_));
+    let chance = if straight { node.memory.chance } else { None };
+    let trace = Trace { key, chance };
+    Way { direction: in_world(frame, child), side, weight: child.weight, eta: child.eta, trace }
+}
+
+/// In a direction of the parts that have a density; `None` where they absorb, or an interpolated normal misleads.
+#[inline]
+fn anywhere(
+    node: &PathNode,
+    surface: &SurfaceInteraction,
+    scattering: &Scattering,
+    address: &SampleAddress,
+    uc: f64,
+) -> Option<Way> {
+    let frame = Frame::around(shading_normal(surface));
+    let u = address.pair(node.memory.key, Purpose::Direction);
+    let child = scattering.sample(frame.to_local(surface.wo), uc, u, TransportMode::Radiance)?;
+    let (direction, side) = (in_world(&frame, &child), side(&child));
+    if surface.side_of(direction) != side {
+        return None;
+    }
+    let Density::SolidAngle(pdf) = child.pdf else { unreachable!("it has a density") };
+    let chance = Some(Chance { pdf, from: surface.point });
+    let trace = Trace { key: node.memory.key.scattered(), chance };
+    Some(Way { direction, side, weight: child.weight, eta: child.eta, trace })
+}
+
+/// The direction of a child.
+#[inline]
+fn in_world(frame: &Frame, child: &Sample<f64>) -> DVec3 {
+    let direction = frame.to_world(child.wi);
+    // One Newton step towards unit length: without it errors grow along a long chain.
+    direction * (1.5 - 0.5 * direction.dot(direction))
 }

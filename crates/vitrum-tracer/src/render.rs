@@ -172,7 +172,8 @@ fn render_here(scene: &Scene, settings: &Settings, mut film: Film, progress: &dy
         let done: Vec<_> = if settings.threads == 1 {
             work.iter().map(render).collect()
         } else {
-            work.par_iter().map(render).collect()
+            // One by one: tiles that see glass take many times as long as others, and would be left for one thread at the end.
+            work.par_iter().with_max_len(1).map(render).collect()
         };
         for ((buffer, tile), (pixels, tile_stats)) in
             work.iter().zip(&done).filter_map(|(t, d)| Some((t, d.as_ref()?)))
@@ -228,7 +229,7 @@ fn branching(
         let found: Vec<_> = if settings.threads == 1 {
             rows.iter().map(row).collect()
         } else {
-            rows.par_iter().map(row).collect()
+            rows.par_iter().with_max_len(1).map(row).collect()
         };
         found.into_iter().flatten().collect::<Vec<Findings>>()
     };

@@ -1,15 +1,16 @@
 //! The ray tree: the hot loop.
 //!
-//! A node is a ray with the weight that its radiance has in the sample. Nodes wait on an explicit stack and are taken depth
+//! A node is a ray with the weight that its radiance has in the sample. Nodes wait in a tree (`ray_tree.rs`) and are taken depth
 //! first. Two ways of following light share all that, and differ in what they do at a hit: see the [`Policy`] of
 //! [`Whitted`](crate::whitted::Whitted) and of [`Path`](crate::path::Path).
 
 use crate::light_sampler::LightSampler;
 use crate::plan::Plan;
+use crate::ray_tree::{Children, Node, RayTree};
 use crate::scene::{Medium, Scene};
 use crate::settings::{Branching, Settings};
 use crate::stats::Stats;
-use vitrum_bxdf::{Sample, Split, TransportMode};
+use vitrum_bxdf::{Bxdf, Sample, Split, TransportMode};
 use vitrum_geometry::{Query, Side, SurfaceInteraction};
 use vitrum_materials::Scattering;
 use vitrum_math::{DVec3, Frame, Ray, Rgb, SampleAddress};
@@ -23,13 +24,14 @@ pub(crate) trait Policy: Sized {
     const ROOT: Self::Memory;
 
     /// What a hit does: returns the radiance that it sends to where the ray came from, apart from what comes along its
-    /// children, and puts these on the stack.
+    /// children, and puts these into the tree.
     fn hit(
         walker: &mut Walker<'_, Self>,
         node: &Node<Self::Memory>,
         surface: &SurfaceInteraction,
         scattering: &Scattering,
         address: &SampleAddress,
+        children: &mut Children<'_, Self::Memory>,
     ) -> Rgb;
 
     /// What a ray that escapes brings.
@@ -39,20 +41,7 @@ pub(crate) trait Policy: Sized {
     }
 }
 
-/// A ray, and what its radiance counts for.
-pub(crate) struct Node<M> {
-    pub(crate) query: Query,
-    pub(crate) throughput: Rgb,
-    /// Product of eta² over the crossings so far: throughput times this is the weight without the radiance factor, by which
-    /// subtrees are judged.
-    pub(crate) eta_squared: f64,
-    pub(crate) depth: u32,
-    /// What it goes through, where media absorb.
-    pub(crate) medium: Medium,
-    pub(crate) memory: M,
-}
-
-/// One worker's ray trees, its stack reused from sample to sample.
+/// One worker's ray trees, the room for one reused from sample to sample.
 pub(crate) struct Walker<'s, P: Policy> {
     pub(crate) scene: &'s Scene,
     pub(crate) lights: &'s LightSampler,
@@ -60,7 +49,7 @@ pub(crate) struct Walker<'s, P: Policy> {
     pub(crate) plan: &'s Plan,
     /// Which of the rays that glass divides a path follows.
     pub(crate) branching: Branching,
-    pub(crate) stack: Vec<Node<P::Memory>>,
+    tree: RayTree<P::Memory>,
     pub(crate) stats: Stats,
     /// Nodes of the present sample so far, where paths count them.
     pub(crate) nodes: u32,
@@ -75,25 +64,19 @@ impl<'s, P: Policy> Walker<'s, P> {
         settings: &'s Settings,
         plan: &'s Plan,
     ) -> Self {
-        let (stack, stats) = (Vec::new(), Stats::default());
+        let (tree, stats) = (RayTree::default(), Stats::default());
         let branching = settings.branching;
-        Self { scene, lights, settings, plan, branching, stack, stats, nodes: 0, given_up: 0.0 }
+        Self { scene, lights, settings, plan, branching, tree, stats, nodes: 0, given_up: 0.0 }
     }
 
     /// The radiance that arrives along a camera ray.
     pub(crate) fn radiance(&mut self, ray: Ray, address: &SampleAddress) -> Rgb {
         (self.nodes, self.given_up) = (0, 0.0);
         self.stats.camera_rays += 1;
-        self.stack.push(Node {
-            query: Query::new(ray),
-            throughput: Rgb::ONE,
-            eta_squared: 1.0,
-            depth: 0,
-            medium: Medium::AROUND,
-            memory: P::ROOT,
-        });
+        let mut tree = std::mem::take(&mut self.tree);
+        tree.plant(Query::new(ray), P::ROOT);
         let mut radiance = Rgb::ZERO;
-        while let Some(mut node) = self.stack.pop() {
+        while let Some((node, mut children)) = tree.next() {
             self.stats.deepest = self.stats.deepest.max(node.depth);
 
             // The ray escapes, or finds a surface; the medium takes its share of what it brings.
@@ -101,14 +84,14 @@ impl<'s, P: Policy> Walker<'s, P> {
                 if self.plan.absorption {
                     node.throughput *= self.scene.absorption_of(node.medium).transmittance(f64::INFINITY);
                 }
-                radiance += node.throughput * P::escape(self, &node);
+                radiance += node.throughput * P::escape(self, node);
                 continue;
             };
             let surface = self.scene.aggregate().interaction(&node.query, &hit);
             if self.plan.absorption {
                 if node.depth == 0 {
                     // Where the camera stands, the first surface knows.
-                    node.medium = self.medium(&node, &surface, Side::Incident);
+                    node.medium = self.medium(node, &surface, Side::Incident);
                 }
                 node.throughput *= self.scene.absorption_of(node.medium).transmittance(hit.t);
             }
@@ -116,35 +99,28 @@ impl<'s, P: Policy> Walker<'s, P> {
 
             // The surface sends out light of its own, and returns what the lights send to it; light from other surfaces
             // arrives along the children.
-            radiance += node.throughput * P::hit(self, &node, &surface, &scattering, address);
+            radiance += node.throughput * P::hit(self, node, &surface, &scattering, address, &mut children);
         }
+        self.tree = tree;
         radiance
     }
 
-    /// The children of a hit, with the frame that their directions are in: around the shading normal, unless that puts a
-    /// direction on the wrong side of the surface.
-    #[inline]
-    pub(crate) fn split(
-        &mut self,
-        surface: &SurfaceInteraction,
-        scattering: &Scattering,
-    ) -> (Split<f64>, Frame) {
-        let around = |normal: DVec3| {
-            let frame = Frame::around(normal);
-            (scattering.split(frame.to_local(surface.wo), TransportMode::Radiance), frame)
-        };
-        if surface.ns == surface.ng {
-            return around(surface.ng);
-        }
-        if shading_normal(surface) == surface.ns {
-            let (split, frame) = around(surface.ns);
-            let agrees = |child: &Sample<f64>| surface.side_of(frame.to_world(child.wi)) == side(child);
-            if [&split.reflected, &split.transmitted].into_iter().flatten().all(agrees) {
-                return (split, frame);
-            }
+    /// The specular children of a hit, with the frame that their directions are in: around the shading normal, unless that puts
+    /// a direction on the wrong side of the surface.
+    // Always, because what it returns is large and would be copied.
+    #[inline(always)]
+    pub(crate) fn split(&mut self, surface: &SurfaceInteraction, body: &Bxdf<f64>) -> (Split<f64>, Frame) {
+        let normal = shading_normal(surface);
+        let frame = Frame::around(normal);
+        let split = body.split(frame.to_local(surface.wo), TransportMode::Radiance);
+        let agrees = |child: &Sample<f64>| surface.side_of(frame.to_world(child.wi)) == side(child);
+        let children = || [&split.reflected, &split.transmitted].into_iter().flatten();
+        if surface.ns == surface.ng || normal == surface.ns && children().all(agrees) {
+            return (split, frame);
         }
         self.stats.normal_fallbacks += 1;
-        around(surface.ng)
+        let frame = Frame::around(surface.ng);
+        (body.split(frame.to_local(surface.wo), TransportMode::Radiance), frame)
     }
 
     /// What a ray goes through that leaves the surface to a side: what the surface says, or what the ray came through.

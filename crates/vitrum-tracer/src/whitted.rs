@@ -3,7 +3,8 @@
 //! zero, at the depth limit, and where weights fall below the cut-off. What ends early is counted.
 
 use crate::direct::direct;
-use crate::walker::{Node, Policy, Walker, shading_normal, side};
+use crate::ray_tree::{Children, Node};
+use crate::walker::{Policy, Walker, shading_normal, side};
 use vitrum_bxdf::Sample;
 use vitrum_geometry::{Side, SurfaceInteraction};
 use vitrum_materials::Scattering;
@@ -24,15 +25,16 @@ impl Policy for Whitted {
         surface: &SurfaceInteraction,
         scattering: &Scattering,
         _: &SampleAddress,
+        children: &mut Children<'_, ()>,
     ) -> Rgb {
         let local = walker.local_light(node, surface, scattering);
-        if scattering.specular().is_some() {
-            let (split, frame) = walker.split(surface, scattering);
+        if let Some(body) = scattering.specular() {
+            let (split, frame) = walker.split(surface, body);
             if let Some(child) = &split.reflected {
-                walker.follow(node, surface, &frame, child);
+                walker.follow(node, surface, &frame, child, children);
             }
             if let Some(child) = &split.transmitted {
-                walker.follow(node, surface, &frame, child);
+                walker.follow(node, surface, &frame, child, children);
             }
         }
         local
@@ -60,7 +62,7 @@ impl Walker<'_, Whitted> {
         local
     }
 
-    /// Puts a child on the stack, unless it is too deep or too faint.
+    /// Puts a child into the tree, unless it is too deep or too faint.
     #[inline]
     fn follow(
         &mut self,
@@ -68,6 +70,7 @@ impl Walker<'_, Whitted> {
         surface: &SurfaceInteraction,
         frame: &Frame,
         child: &Sample<f64>,
+        children: &mut Children<'_, ()>,
     ) {
         let throughput = parent.throughput * child.weight;
         let eta_squared = parent.eta_squared * (child.eta * child.eta);
@@ -85,13 +88,11 @@ impl Walker<'_, Whitted> {
         let direction = frame.to_world(child.wi);
         // One Newton step towards unit length: without it errors grow along a long chain.
         let direction = direction * (1.5 - 0.5 * direction.dot(direction));
-        self.stack.push(Node {
-            query: surface.leave(direction, side),
-            throughput,
-            eta_squared,
-            depth,
-            medium: self.medium(parent, surface, side),
-            memory: (),
-        });
+        let next = children.push();
+        next.query = surface.leave(direction, side);
+        next.throughput = throughput;
+        next.eta_squared = eta_squared;
+        next.depth = depth;
+        next.medium = self.medium(parent, surface, side);
     }
 }
