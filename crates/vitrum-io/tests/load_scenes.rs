@@ -130,6 +130,31 @@ material = { type = "emissive", radiance = 0 }
     }
 }
 
+/// A point light in glass is said, and only where glass is all around it and keeps its light in.
+#[test]
+fn lights_inside_glass_are_said() {
+    let with = |light: &str, glass: &str| {
+        let text = format!(
+            "[render]\nintegrator = \"path\"\n\
+             [camera]\ntype = \"pinhole\"\nposition = [0, 0, 9]\ntarget = [0, 0, 0]\nfov = 40\n\
+             [[object]]\nname = \"ball\"\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\n\
+             material = {{ type = \"dielectric\", ior = 1.5{glass} }}\n\
+             [[light]]\ntype = \"point\"\nintensity = 1\n{light}\n"
+        );
+        load::scene_text("lamp.toml", &text, Path::new("")).expect("only warnings").warnings.to_string()
+    };
+    let said = with("position = [0.3, 0.2, 0]", "");
+    assert!(said.contains("a light inside the glass of `ball` lights nothing outside of it"), "{said}");
+    assert!(said.contains("lamp.toml:") && said.contains("emissive"), "{said}");
+    for (light, glass) in [
+        ("position = [0, 1.1, 0]", ""),
+        ("position = [0.3, 0.2, 0]\nshadows = false", ""),
+        ("position = [0.3, 0.2, 0]", ", roughness = 0.2"),
+    ] {
+        assert_eq!(with(light, glass), "", "{light}{glass}");
+    }
+}
+
 /// A metal's name stands for its n and k.
 #[test]
 fn a_named_metal_is_its_index() {

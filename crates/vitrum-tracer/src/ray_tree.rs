@@ -11,6 +11,10 @@ use vitrum_math::Rgb;
 /// A hit has so many children at most: mirrored, transmitted, scattered.
 const MOST_CHILDREN: usize = 3;
 
+/// So many free places one after the other are used again, though that moves a node: a long chain, in which each node has one child,
+/// would leave one for each.
+const FAR: u32 = 32;
+
 /// A ray, and what its radiance counts for.
 #[derive(Clone, Copy)]
 pub(crate) struct Node<M> {
@@ -79,7 +83,13 @@ impl<M: Copy> RayTree<M> {
     /// The next node, and where its children are put.
     #[inline]
     pub(crate) fn next(&mut self) -> Option<(&mut Node<M>, Children<'_, M>)> {
-        let first = self.last? + 1;
+        let mut at = self.last?;
+        let lowest = self.places[at as usize].before.map_or(0, |before| before + 1);
+        if at - lowest >= FAR {
+            self.places[lowest as usize] = self.places[at as usize];
+            at = lowest;
+        }
+        let first = at + 1;
         let enough = first as usize + MOST_CHILDREN;
         if self.places.len() < enough {
             self.places.resize(2 * enough, self.places[0]);
@@ -108,5 +118,63 @@ impl<M> Children<'_, M> {
     #[inline]
     pub(crate) fn waiting(&self) -> usize {
         *self.waiting
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vitrum_math::{DVec3, Ray};
+
+    fn tree() -> RayTree<u32> {
+        let mut tree = RayTree::default();
+        tree.plant(Query::new(Ray::new(DVec3::ZERO, DVec3::Z)), 0);
+        tree
+    }
+
+    /// Names of the nodes of a tree in the order in which they are followed; `children` names those of a node.
+    fn followed(children: impl Fn(u32) -> Vec<u32>) -> (Vec<u32>, usize) {
+        let (mut tree, mut order) = (tree(), Vec::new());
+        let mut waiting = 1;
+        while let Some((node, mut free)) = tree.next() {
+            let name = node.memory;
+            order.push(name);
+            waiting -= 1;
+            for child in children(name) {
+                free.push().memory = child;
+                waiting += 1;
+            }
+            assert_eq!(free.waiting(), waiting);
+        }
+        (order, tree.places.len())
+    }
+
+    #[test]
+    fn the_last_child_is_followed_first() {
+        let children = |name| match name {
+            0 => vec![1, 2, 3],
+            3 => vec![4],
+            2 => vec![5, 6],
+            _ => vec![],
+        };
+        assert_eq!(followed(children).0, [0, 3, 4, 2, 6, 5, 1]);
+    }
+
+    /// A chain of a hundred thousand nodes needs no more room than one of a hundred, and nothing that waits below it is lost.
+    #[test]
+    fn long_chains_use_places_again() {
+        let chain = |length: u32| {
+            move |name| match name {
+                0 => vec![length + 1, 1],
+                name if name < length => vec![name + 1],
+                name if name > length && name < length + 50 => vec![name + 100, name + 1],
+                _ => vec![],
+            }
+        };
+        let (order, room) = followed(chain(100));
+        let (longer, same) = followed(chain(100_000));
+        assert_eq!(longer.len() - order.len(), 99_900);
+        assert!(longer.iter().take(100_001).copied().eq(0..=100_000));
+        assert_eq!(room, same);
     }
 }

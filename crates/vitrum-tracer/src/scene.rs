@@ -3,9 +3,9 @@
 use crate::background::Background;
 use crate::camera::Camera;
 use crate::light::Light;
-use vitrum_geometry::{Aggregate, Hit, Object};
+use vitrum_geometry::{Aggregate, Counters, Hit, Object, Query};
 use vitrum_materials::{Absorption, IndexOfRefraction, Material, Scattering};
-use vitrum_math::{DVec3, Rgb};
+use vitrum_math::{DVec3, Ray, Rgb, unit};
 
 /// An object with its name and material, as it enters a [`Scene`].
 #[derive(Clone, Debug)]
@@ -170,6 +170,30 @@ impl Scene {
             }
             None => &self.absorption,
         }
+    }
+
+    /// The smooth glass that a point lies in: an object whose surface a ray from there meets from behind, where rays in all of
+    /// several directions meet such a surface first. What a point light sends out there stays there: no ray that asks for it
+    /// is refracted.
+    pub fn glass_around(&self, point: DVec3) -> Option<u32> {
+        // Off the axes, along which models have edges and seams.
+        const DIRECTIONS: [DVec3; 6] = [
+            DVec3::new(0.91, 0.17, -0.29),
+            DVec3::new(-0.83, 0.31, 0.23),
+            DVec3::new(0.13, 0.87, 0.37),
+            DVec3::new(-0.19, -0.93, 0.11),
+            DVec3::new(0.29, -0.23, 0.79),
+            DVec3::new(-0.37, -0.13, -0.89),
+        ];
+        let left = |direction: &DVec3| {
+            let query = Query::new(Ray::new(point, unit(*direction)));
+            let hit = self.aggregate.closest(&query, &mut Counters::default())?;
+            let material = self.material(hit.object, hit.face);
+            let behind = !self.aggregate.interaction(&query, &hit).front;
+            (behind && material.is_dielectric() && !material.is_rough()).then_some(hit.object)
+        };
+        let objects: Option<Vec<u32>> = DIRECTIONS.iter().map(left).collect();
+        objects?.first().copied()
     }
 
     /// The materials of an object, at least one.

@@ -93,7 +93,7 @@ pub(super) fn lower(
             scene.background = background;
             scene.medium = matter.medium;
             scene.absorption = matter.absorption;
-            (scene.ambient, scene.lights) = lights(&desc.lights, source, &mut problems);
+            (scene.ambient, scene.lights) = lights(desc, source, &scene, &mut problems);
             problems.sort();
             Ok(Loaded {
                 scene,
@@ -466,11 +466,16 @@ fn analytic(shape: &scene::Shape) -> Result<Shape, ShapeError> {
 }
 
 /// Ambient radiance, and the other lights in the order of their names (unnamed ones by what they are), so that sums over
-/// them never depend on the order in the file. Lights without power are left out, and said.
-fn lights(described: &[scene::Light], source: &Source<'_>, problems: &mut Diagnostics) -> (Rgb, Vec<Light>) {
+/// them never depend on the order in the file. Lights without power are left out, and said; lights that glass keeps in are said.
+fn lights(
+    desc: &SceneDesc,
+    source: &Source<'_>,
+    within: &Scene,
+    problems: &mut Diagnostics,
+) -> (Rgb, Vec<Light>) {
     let mut ambient: Vec<(String, Rgb)> = Vec::new();
     let mut lights: Vec<(String, Light)> = Vec::new();
-    for light in described {
+    for light in &desc.lights {
         let lowered = match light.kind {
             scene::LightKind::Ambient { radiance } => {
                 ambient.push((format!("{radiance:?}"), radiance));
@@ -501,6 +506,21 @@ fn lights(described: &[scene::Light], source: &Source<'_>, problems: &mut Diagno
             let warning = Diagnostic::warning(source.name(), "a light without power is left out");
             problems.push(warning.at(source, light.span, "it shines with 0"));
         } else {
+            let position = match lowered {
+                Light::Point { position, shadows: true, .. }
+                | Light::Spot { position, shadows: true, .. } => Some(position),
+                _ => None,
+            };
+            let goes_straight = desc.render.shadow == scene::Shadow::Straight;
+            if let Some(glass) = position.filter(|_| !goes_straight).and_then(|at| within.glass_around(at)) {
+                let message = format!(
+                    "a light inside the glass of `{}` lights nothing outside of it",
+                    within.names()[glass as usize]
+                );
+                let help = "glass refracts every ray, and none finds a point: a small sphere of an emissive material is found";
+                let warning = Diagnostic::warning(source.name(), message).help(help);
+                problems.push(warning.at(source, light.span, "this light has no size"));
+            }
             let key = light
                 .name
                 .as_ref()
