@@ -397,17 +397,19 @@ impl Film {
 
     /// The smallest and the largest number of samples taken in any pixel, of all buffers together.
     pub fn samples(&self) -> [u32; 2] {
-        let pixels = 0..self.buffers[0].pixels.len();
-        let taken = pixels.map(|at| self.buffers.iter().map(|b| b.pixels[at].taken).sum());
         let (least, most) =
-            taken.fold((u32::MAX, 0), |(least, most): (u32, u32), n: u32| (least.min(n), most.max(n)));
+            self.taken().fold((u32::MAX, 0), |(least, most): (u32, u32), n: u32| (least.min(n), most.max(n)));
         [least, most]
     }
 
     /// The number of samples of each pixel, row by row.
     pub fn sample_counts(&self) -> Vec<u32> {
+        self.taken().collect()
+    }
+
+    fn taken(&self) -> impl Iterator<Item = u32> {
         let pixels = 0..self.buffers[0].pixels.len();
-        pixels.map(|at| self.buffers.iter().map(|b| b.pixels[at].taken).sum()).collect()
+        pixels.map(|at| self.buffers.iter().map(|b| b.pixels[at].taken).sum())
     }
 
     /// How much weight was not followed.

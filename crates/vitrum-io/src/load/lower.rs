@@ -506,17 +506,9 @@ fn lights(
             let warning = Diagnostic::warning(source.name(), "a light without power is left out");
             problems.push(warning.at(source, light.span, "it shines with 0"));
         } else {
-            let position = match lowered {
-                Light::Point { position, shadows: true, .. }
-                | Light::Spot { position, shadows: true, .. } => Some(position),
-                _ => None,
-            };
-            let goes_straight = desc.render.shadow == scene::Shadow::Straight;
-            if let Some(glass) = position.filter(|_| !goes_straight).and_then(|at| within.glass_around(at)) {
-                let message = format!(
-                    "a light inside the glass of `{}` lights nothing outside of it",
-                    within.names()[glass as usize]
-                );
+            let straight = desc.render.shadow == scene::Shadow::Straight;
+            if let Some(glass) = kept_in_by(&lowered, within).filter(|_| !straight) {
+                let message = format!("a light inside the glass of `{glass}` lights nothing outside of it");
                 let help = "glass refracts every ray, and none finds a point: a small sphere of an emissive material is found";
                 let warning = Diagnostic::warning(source.name(), message).help(help);
                 problems.push(warning.at(source, light.span, "this light has no size"));
@@ -532,6 +524,13 @@ fn lights(
     lights.sort_by(|a, b| a.0.cmp(&b.0));
     let ambient = ambient.into_iter().fold(Rgb::ZERO, |sum, (_, radiance)| sum + radiance);
     (ambient, lights.into_iter().map(|(_, light)| light).collect())
+}
+
+/// The name of the glass around a light from one point, where it casts shadows.
+fn kept_in_by<'s>(light: &Light, scene: &'s Scene) -> Option<&'s str> {
+    let (Light::Point { position, .. } | Light::Spot { position, .. }) = light else { return None };
+    let glass = if light.casts_shadows() { scene.glass_around(*position) } else { None };
+    glass.map(|object| &*scene.names()[object as usize])
 }
 
 fn background(
