@@ -83,26 +83,58 @@ fn errors(tiles: &[Moments]) -> String {
     )
 }
 
+/// A pane, behind which trees are best, and a mesh whose rays are dear.
+const A_KNOT_BEHIND_A_PANE: &str = r#"
+[camera]
+type = "pinhole"
+position = [0, 1.6, 5]
+target = [0, 0.8, 0]
+fov = 36
+[background]
+type = "gradient"
+bottom = 0.1
+top = 1
+[[object]]
+shape = "rectangle"
+corner = [-4, 0, 3]
+edge_u = [8, 0, 0]
+edge_v = [0, 0, -8]
+material = { type = "matte", color = 0.7 }
+[[object]]
+shape = "rectangle"
+corner = [-1.6, 0.1, 1]
+edge_u = [1.6, 0, 0]
+edge_v = [0, 1.5, 0]
+material = { type = "thin", ior = 1.5 }
+[[object]]
+shape = "mesh"
+file = "scenes/gallery/meshes/torus_knot.obj"
+transform = [{ translate = [0.3, 0, -0.4] }]
+material = { type = "dielectric", ior = 1.5 }
+"#;
+
 /// How a part of a picture branches is found out for it as for the whole, by any number of threads.
 #[test]
 fn a_part_branches_like_the_whole() {
-    let (name, text) = SCENES[0];
-    let loaded = scene_text(name, text, Path::new("")).unwrap_or_else(|e| panic!("{name}: {e}"));
-    let base = Settings { size: [90, 70], spp: 16, branching: Branching::Auto, ..loaded.settings };
-    let whole = render(&loaded.scene, &base, &()).expect("valid settings");
-    let ways: std::collections::BTreeSet<String> =
-        whole.branching.iter().map(|way| format!("{way:?}")).collect();
-    assert!(ways.len() > 1 && !ways.contains("Auto"), "this picture mixes: {ways:?}");
-    assert!(whole.stats.pilot_rays > 0);
-    let image = whole.film.image();
-    for (threads, crop) in [(1, [37, 21, 29, 18]), (2, [0, 0, 8, 8]), (2, [83, 60, 7, 10])] {
-        let [x, y, width, height] = crop;
-        let crop = Some(Crop { x, y, width, height });
-        let part = render(&loaded.scene, &Settings { threads, crop, ..base }, &()).expect("valid settings");
-        let part = part.film.image();
-        for (row, line) in part.chunks_exact(width as usize).enumerate() {
-            let start = (y as usize + row) * 90 + x as usize;
-            assert_eq!(line, &image[start..][..line.len()], "row {row} of {crop:?}");
+    for (name, text) in [SCENES[3], ("knot behind a pane", A_KNOT_BEHIND_A_PANE)] {
+        let loaded = scene_text(name, text, Path::new("")).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let base = Settings { size: [90, 70], spp: 16, branching: Branching::Auto, ..loaded.settings };
+        let whole = render(&loaded.scene, &base, &()).expect("valid settings");
+        let ways: std::collections::BTreeSet<String> =
+            whole.branching.iter().map(|way| format!("{way:?}")).collect();
+        assert!(ways.len() > 1 && !ways.contains("Auto"), "{name} mixes: {ways:?}");
+        assert!(whole.stats.pilot_rays > 0);
+        let image = whole.film.image();
+        for (threads, crop) in [(1, [37, 21, 29, 18]), (2, [0, 0, 8, 8]), (2, [83, 60, 7, 10])] {
+            let [x, y, width, height] = crop;
+            let crop = Some(Crop { x, y, width, height });
+            let part =
+                render(&loaded.scene, &Settings { threads, crop, ..base }, &()).expect("valid settings");
+            let part = part.film.image();
+            for (row, line) in part.chunks_exact(width as usize).enumerate() {
+                let start = (y as usize + row) * 90 + x as usize;
+                assert_eq!(line, &image[start..][..line.len()], "row {row} of {crop:?} of {name}");
+            }
         }
     }
 }

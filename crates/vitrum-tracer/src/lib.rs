@@ -27,6 +27,8 @@ mod scene;
 mod schedule;
 mod settings;
 mod stats;
+mod threads;
+mod trial;
 mod walker;
 mod whitted;
 
@@ -38,7 +40,8 @@ pub use film::{Buffer, ErrorEstimate, Film, FilmError, Pixel};
 pub use filter::Filter;
 pub use light::{Falloff, Light};
 pub use plan::Plan;
-pub use render::{Ended, Progress, RenderError, Rendering, on_threads, render, resume};
+pub use render::{Ended, Progress, RenderError, Rendering, render, resume};
 pub use scene::{Scene, SceneError, SceneObject};
 pub use settings::{Branching, Crop, Integrator, LightSampling, Settings, ShadowMode, Target};
 pub use stats::{Dropped, GivenUp, Stats};
+pub use threads::on_threads;

@@ -328,6 +328,7 @@ impl Walker<'_, Path> {
             Side::Incident => self.stats.reflected_rays += 1,
             Side::Transmitted => self.stats.transmitted_rays += 1,
         }
+        self.dearer += self.scene.ray_cost(surface.object) - 1.0;
         let next = children.push();
         next.query = surface.leave(way.direction, way.side);
         next.throughput = throughput;

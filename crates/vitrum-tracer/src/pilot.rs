@@ -1,148 +1,146 @@
-//! Which of the rays that glass divides are followed, square of pixels by square: found by trying.
+//! Which of the rays that glass divides are followed, square of pixels by square: found by trying (`trial.rs`).
 //!
-//! Following more of them makes a sample cost more and vary less. With the same random numbers, addressed by place in the tree, a
-//! path that follows one child at random is one way through the tree that follows all: what it finds differs from the tree's value
-//! by chance alone, and the mean square of the difference is the variance that branching would take away. The rest of the variance,
-//! from the places in the pixel and on the lights, two trees of one pixel tell by their difference. The cost of each way is counted
-//! in rays.
+//! Following more of them makes a sample cost more and vary less. First comes the picture as a whole: squares all over it are tried
+//! with nets, and the way of the least error times cost is its best one. Then each square is tried with single samples, whose
+//! variances count by the factors that nets made of them all over the picture. Where every pixel has as many samples, what counts is
+//! the error of the whole picture times its cost: so a square takes another way where that has the lesser sum of both, error over
+//! that of the picture and cost over that of the picture. Where there is little error, trees would cost more than they save. It must be
+//! clearly better, and a square is judged together with its neighbours, for its own few samples say little.
 //!
-//! Every pixel has as many samples, and what counts is the error of the whole picture times its cost. So a square takes the way of
-//! the least sum of both, error over that of the picture and cost over that of the picture: where there is little error, trees
-//! would cost more than they save. Error and cost of the picture come from some squares all over it.
+//! Costs are counted in rays and not read from a clock, so that the same picture comes out anywhere; rays inside a large mesh count
+//! more ([`Scene::ray_cost`]).
 //!
-//! The numbers that the pilot draws are its own, so that what it decides has nothing to do with the samples that are averaged: any
-//! choice leaves the picture unbiased. It depends on the scene, the settings and the place in the whole image, and on nothing that
-//! has been rendered. A square is judged together with its neighbours, for its own few samples say little.
+//! The numbers that are tried are drawn for that alone, so that what is decided has nothing to do with the samples that are averaged:
+//! any choice leaves the picture unbiased. It depends on the scene, the settings and the place in the whole image, and on nothing
+//! that has been rendered.
 
-use crate::film::SQUARE;
+use crate::film::{Film, SQUARE};
 use crate::filter::FilterSampler;
+use crate::light_sampler::LightSampler;
 use crate::path::Path;
-use crate::settings::{Branching, Settings};
+use crate::plan::Plan;
+use crate::render::Progress;
+use crate::scene::Scene;
+use crate::settings::{Branching, Integrator, Settings};
+use crate::threads::on_each;
+use crate::trial::{self, Findings, WAYS};
 use crate::walker::Walker;
-use vitrum_math::{NodeKey, Purpose, Rgb, SampleAddress};
 
-/// What the seed of the pilot is farther on.
-const SEED: u64 = 0x6a09_e667_f3bc_c909;
-/// Every so many pixels across and down one is tried.
-const STRIDE: u32 = 4;
-/// Samples of each of them.
-const SAMPLES: u32 = 2;
-/// By so much evenly spread numbers take down the variance from places faster than that from choices. Of 2, 3, 4 and 6,
-/// tried on four scenes of `benches/peers/mitsuba`, it loses least against the best fixed way where it loses most.
-const GAIN: f64 = 4.0;
-/// What is chosen must be better by this factor than whole trees, which are right where the pilot says little.
-const MARGIN: f64 = 0.97;
-/// Squares across and down that tell what the picture is like.
-pub(crate) const SURVEYED: u32 = 16;
+/// At most so many squares across and down tell what the picture is like, and about one on so many pixels. Then all trials
+/// together are about three samples of a hundred where there are sixteen a pixel; more where a part of a picture is rendered, for
+/// the whole is asked.
+const ACROSS: u32 = 16;
+const PIXELS_EACH: u64 = 300;
+/// A square goes another way than the picture where that is better by this factor.
+const CLEARLY: f64 = 0.8;
 
-/// The ways to branch, the one that is right in doubt first.
-const WAYS: [Branching; 3] = [Branching::Tree, Branching::First, Branching::One];
-
-/// What the pilot finds in a square.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Findings {
-    /// Variance that is left when all children are followed.
+/// What is best for the picture as a whole.
+struct Verdict {
+    /// The place of the best way, if all squares take the same.
+    best: usize,
+    /// By what nets multiply the variances that single samples show: that of trees, and what each way adds.
     between: f64,
-    /// What is added by each way.
-    within: [f64; 3],
-    /// Rays of each way.
-    cost: [f64; 3],
+    within: [f64; WAYS.len()],
+    /// What a ray is worth in error: that of the picture over its cost.
+    price: f64,
 }
 
-impl Findings {
-    pub(crate) fn add(&mut self, other: &Self) {
-        self.between += other.between;
-        for way in 0..WAYS.len() {
-            self.within[way] += other.within[way];
-            self.cost[way] += other.cost[way];
+impl Verdict {
+    /// From what single samples and nets tell of squares all over the picture.
+    fn of(surveyed: &[[Findings; 2]]) -> Self {
+        let [mut singles, mut nets] = [Findings::default(); 2];
+        for [of_singles, of_nets] in surveyed {
+            singles.add(of_singles);
+            nets.add(of_nets);
+        }
+        let error = |way: usize| nets.between + nets.within[way];
+        let product = |way: &usize| error(*way) * nets.cost[*way];
+        let best = (0..WAYS.len()).min_by(|a, b| product(a).total_cmp(&product(b))).expect("there are ways");
+        // Where nothing varies, factors multiply nothing.
+        let ratio = |a: f64, b: f64| if b > 0.0 { a / b } else { 1.0 };
+        Self {
+            best,
+            between: ratio(nets.between, singles.between),
+            within: std::array::from_fn(|way| ratio(nets.within[way], singles.within[way])),
+            price: if nets.cost[best] > 0.0 { error(best) / nets.cost[best] } else { 0.0 },
         }
     }
 
-    /// Rays of all ways.
-    pub(crate) fn rays(&self) -> u64 {
-        self.cost.iter().sum::<f64>() as u64
-    }
-
-    /// Error and cost of a way.
-    fn of(&self, way: usize) -> (f64, f64) {
-        (self.between / GAIN + self.within[way], self.cost[way])
-    }
-
-    /// The place of the best way, where a ray is worth so much error.
-    fn best_at(&self, price: f64) -> usize {
-        let worth = |way: usize| {
-            let (error, cost) = self.of(way);
-            error + price * cost
+    /// The way of a square.
+    fn on(&self, square: &Findings) -> Branching {
+        let worth = |way: &usize| {
+            let error = self.between * square.between + self.within[*way] * square.within[*way];
+            error + self.price * square.cost[*way]
         };
-        let other = if worth(1) < worth(2) { 1 } else { 2 };
-        if worth(other) < MARGIN * worth(0) { other } else { 0 }
-    }
-
-    /// The best way, where a ray is worth so much error.
-    pub(crate) fn best(&self, price: f64) -> Branching {
-        WAYS[self.best_at(price)]
+        let others = (0..WAYS.len()).filter(|way| *way != self.best);
+        let other = others.min_by(|a, b| worth(a).total_cmp(&worth(b))).expect("there are other ways");
+        WAYS[if worth(&other) < CLEARLY * worth(&self.best) { other } else { self.best }]
     }
 }
 
-/// What a ray is worth in error: that of the picture over its rays, when its squares take their best ways.
-pub(crate) fn price(squares: &[Findings]) -> f64 {
-    let mut price = 0.0;
-    for _ in 0..4 {
-        let sum = |(error, cost): (f64, f64), square: &Findings| {
-            let (its_error, its_cost) = square.of(square.best_at(price));
-            (error + its_error, cost + its_cost)
-        };
-        let (error, cost) = squares.iter().fold((0.0, 0.0), sum);
-        price = if cost > 0.0 { error / cost } else { 0.0 };
-    }
-    price
-}
-
-/// Tries a square, given by its column and row in the whole image.
-pub(crate) fn explore(
-    walker: &mut Walker<'_, Path>,
+/// How the paths of each square of the film branch, and the rays that it took to find out.
+pub(crate) fn branching(
+    what @ (_, _, settings, plan): (&Scene, &LightSampler, &Settings, &Plan),
     filter: &FilterSampler,
-    [column, row]: [u32; 2],
-) -> Findings {
-    let settings: &Settings = walker.settings;
-    let [width, height] = settings.size;
-    let mut findings = Findings::default();
-    // Not at the edge of the square: the middle of each part.
-    let places = |from: u32, end: u32| (from + STRIDE / 2..(from + SQUARE).min(end)).step_by(STRIDE as usize);
-    for y in places(row * SQUARE, height) {
-        for x in places(column * SQUARE, width) {
-            let mut trees = [Rgb::ZERO; SAMPLES as usize];
-            for (sample, tree) in (0..SAMPLES).zip(&mut trees) {
-                let address = SampleAddress::new(settings.seed.wrapping_add(SEED), x, y, sample)
-                    .of_sequence(settings.sequence);
-                let [dx, dy] = filter.sample(address.pair(NodeKey::ROOT, Purpose::Film));
-                for (way, branching) in WAYS.into_iter().enumerate() {
-                    let lens = || address.pair(NodeKey::ROOT, Purpose::Lens);
-                    let ray =
-                        walker.scene.camera.ray(f64::from(x) + dx, f64::from(y) + dy, settings.size, lens);
-                    let rays = walker.stats.rays();
-                    walker.branching = branching;
-                    let radiance = walker.radiance(ray, &address);
-                    findings.cost[way] += (walker.stats.rays() - rays) as f64;
-                    if way == 0 {
-                        *tree = radiance;
-                    }
-                    findings.within[way] += relative(radiance - *tree, *tree);
-                }
-            }
-            let mean = (trees[0] + trees[1]) * 0.5;
-            // Two values differ by twice the variance of one, in the mean square.
-            findings.between += f64::from(SAMPLES) * 0.5 * relative(trees[0] - trees[1], mean);
+    film: &Film,
+    progress: &dyn Progress,
+) -> (Vec<Branching>, u64) {
+    let (columns, rows) = film.squares();
+    let all = |way: Branching| (vec![way; columns as usize * rows as usize], 0);
+    let divides = plan.dielectrics || plan.mirrors || plan.thin_sheets;
+    match settings.branches() {
+        Branching::Auto if settings.integrator == Integrator::Whitted || !divides => {
+            return all(Branching::Tree);
         }
+        Branching::Auto => {}
+        given => return all(given),
     }
-    findings
+    let whole = settings.size.map(|side| side.div_ceil(SQUARE));
+    let pixels = u64::from(settings.size[0]) * u64::from(settings.size[1]);
+    let across = ((pixels / PIXELS_EACH).isqrt() as u32).clamp(1, ACROSS);
+    let all_over = whole.map(|squares| -> Vec<u32> {
+        let count = squares.min(across);
+        (0..count).map(|i| (2 * i + 1) * squares / (2 * count)).collect()
+    });
+    let survey = |walker: &mut Walker<'_, Path>, square| trial::nets(walker, filter, square);
+    let (surveyed, survey_rays) = tried(what, &all_over, survey, progress);
+    let verdict = Verdict::of(&surveyed);
+
+    // A square is judged with its neighbours in the whole image, so that a part of it is judged the same.
+    let first = [settings.area().x, settings.area().y].map(|at| at / SQUARE);
+    let from = first.map(|square| square.saturating_sub(1));
+    let to = [(first[0] + columns + 1).min(whole[0]), (first[1] + rows + 1).min(whole[1])];
+    let here = [0, 1].map(|axis| (from[axis]..to[axis]).collect::<Vec<u32>>());
+    let look = |walker: &mut Walker<'_, Path>, square| trial::singles(walker, filter, square);
+    let (found, rays) = tried(what, &here, look, progress);
+    let judged = |at: u32| {
+        let (column, row) = (first[0] + at % columns, first[1] + at / columns);
+        let mut sum = Findings::default();
+        for y in row.saturating_sub(1).max(from[1])..(row + 2).min(to[1]) {
+            for x in column.saturating_sub(1).max(from[0])..(column + 2).min(to[0]) {
+                sum.add(&found[((y - from[1]) * (to[0] - from[0]) + x - from[0]) as usize]);
+            }
+        }
+        verdict.on(&sum)
+    };
+    ((0..columns * rows).map(judged).collect(), survey_rays + rays)
 }
 
-/// The squared difference as relMSE has it. Rare bright samples are held down: they tell more of themselves than of the square.
-fn relative(difference: Rgb, value: Rgb) -> f64 {
-    let squared = difference * difference / (value * value + Rgb::splat(0.01));
-    squared.element_sum().min(MOST)
+/// What is found of the squares in columns and rows, row by row, and the rays that it took. What is stopped now is stopped before
+/// the first sample.
+fn tried<T: Default + Send>(
+    (scene, lights, settings, plan): (&Scene, &LightSampler, &Settings, &Plan),
+    [columns, rows]: &[Vec<u32>; 2],
+    look: impl Fn(&mut Walker<'_, Path>, [u32; 2]) -> T + Sync,
+    progress: &dyn Progress,
+) -> (Vec<T>, u64) {
+    let squares: Vec<[u32; 2]> =
+        rows.iter().flat_map(|row| columns.iter().map(|column| [*column, *row])).collect();
+    let done = on_each(settings, &squares, |square| {
+        let mut walker = Walker::<Path>::new(scene, lights, settings, plan);
+        let found = if progress.is_stopped() { T::default() } else { look(&mut walker, *square) };
+        (found, walker.stats.rays())
+    });
+    let rays = done.iter().map(|(_, rays)| rays).sum();
+    (done.into_iter().map(|(found, _)| found).collect(), rays)
 }
-
-/// The largest squared difference that counts.
-const MOST: f64 = 30.0;

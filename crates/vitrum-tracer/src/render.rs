@@ -1,19 +1,19 @@
 //! Tiles, samples and threads.
 
-use crate::film::{Buffer, Film, Pixel, PixelSum, SQUARE};
+use crate::film::{Buffer, Film, Pixel, PixelSum};
 use crate::filter::FilterSampler;
 use crate::light_sampler::LightSampler;
 use crate::path::Path;
-use crate::pilot::{self, Findings};
+use crate::pilot;
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::schedule::Schedule;
 use crate::settings::{Branching, Crop, Integrator, Settings, Target};
 use crate::stats::{Dropped, Stats};
+use crate::threads::{on_each, on_threads};
 use crate::walker::{Policy, Walker};
 use crate::whitted::Whitted;
-use rayon::prelude::*;
-use vitrum_math::{NodeKey, Purpose, Rgb, SampleAddress};
+use vitrum_math::{Rgb, SampleAddress};
 
 /// What the seed of the second buffer is farther on: any large odd number will do, that nobody counts up to.
 const OTHER_BUFFER: u64 = 0x9e6c_63d0_876a_9a35;
@@ -99,19 +99,6 @@ pub enum RenderError {
     Threads(String),
 }
 
-/// Does some work on so many threads, where it can use more than one: as many as there are processors for 0, the calling
-/// one alone for 1.
-///
-/// # Errors
-/// [`RenderError::Threads`] where the system gives none.
-pub fn on_threads<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> Result<R, RenderError> {
-    if threads == 1 {
-        return Ok(work());
-    }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    Ok(pool.map_err(|e| RenderError::Threads(e.to_string()))?.install(work))
-}
-
 /// Renders a scene.
 ///
 /// # Errors
@@ -153,7 +140,8 @@ fn render_here(scene: &Scene, settings: &Settings, mut film: Film, progress: &dy
     let work: Vec<(usize, Crop)> =
         (0..film.buffers().len()).flat_map(|buffer| tiles.iter().map(move |tile| (buffer, *tile))).collect();
     let filter = FilterSampler::new(settings.filter);
-    let (branching, pilot_rays) = branching(scene, &lights, settings, &plan, &film, &filter, progress);
+    let (branching, pilot_rays) =
+        pilot::branching((scene, &lights, settings, &plan), &filter, &film, progress);
     stats.pilot_rays = pilot_rays;
     let mut schedule = Schedule::new(settings);
     loop {
@@ -169,12 +157,7 @@ fn render_here(scene: &Scene, settings: &Settings, mut film: Film, progress: &dy
             progress.advance(done.1.samples, done.1.rays());
             Some(done)
         };
-        let done: Vec<_> = if settings.threads == 1 {
-            work.iter().map(render).collect()
-        } else {
-            // One by one: tiles that see glass take many times as long as others, and would be left for one thread at the end.
-            work.par_iter().with_max_len(1).map(render).collect()
-        };
+        let done = on_each(settings, &work, render);
         for ((buffer, tile), (pixels, tile_stats)) in
             work.iter().zip(&done).filter_map(|(t, d)| Some((t, d.as_ref()?)))
         {
@@ -186,73 +169,6 @@ fn render_here(scene: &Scene, settings: &Settings, mut film: Film, progress: &dy
         }
         progress.keep(&film);
     }
-}
-
-/// How the paths of each square branch, and the rays that it took to find out.
-fn branching(
-    scene: &Scene,
-    lights: &LightSampler,
-    settings: &Settings,
-    plan: &Plan,
-    film: &Film,
-    filter: &FilterSampler,
-    progress: &dyn Progress,
-) -> (Vec<Branching>, u64) {
-    let (columns, rows) = film.squares();
-    let all = |way: Branching| (vec![way; columns as usize * rows as usize], 0);
-    let divides = plan.dielectrics || plan.mirrors || plan.thin_sheets;
-    match settings.branches() {
-        Branching::Auto if settings.integrator == Integrator::Whitted || !divides => {
-            return all(Branching::Tree);
-        }
-        Branching::Auto => {}
-        given => return all(given),
-    }
-    // A square is judged with its neighbours in the whole image, so that a part of it is judged the same.
-    let first = [settings.area().x, settings.area().y].map(|at| at / SQUARE);
-    let whole = settings.size.map(|side| side.div_ceil(SQUARE));
-    let from = first.map(|square| square.saturating_sub(1));
-    let to = [(first[0] + columns + 1).min(whole[0]), (first[1] + rows + 1).min(whole[1])];
-    let wide = to[0] - from[0];
-    let explore = |columns: &[u32], rows: &[u32]| {
-        let row = |row: &u32| {
-            let mut walker = Walker::<Path>::new(scene, lights, settings, plan);
-            // What is stopped now is stopped before the first sample.
-            let mut square = |column: &u32| {
-                if progress.is_stopped() {
-                    return Findings::default();
-                }
-                pilot::explore(&mut walker, filter, [*column, *row])
-            };
-            columns.iter().map(&mut square).collect::<Vec<Findings>>()
-        };
-        let found: Vec<_> = if settings.threads == 1 {
-            rows.iter().map(row).collect()
-        } else {
-            rows.par_iter().with_max_len(1).map(row).collect()
-        };
-        found.into_iter().flatten().collect::<Vec<Findings>>()
-    };
-    let all_over = |axis: usize| -> Vec<u32> {
-        let count = whole[axis].min(pilot::SURVEYED);
-        (0..count).map(|i| (2 * i + 1) * whole[axis] / (2 * count)).collect()
-    };
-    let surveyed = explore(&all_over(0), &all_over(1));
-    let price = pilot::price(&surveyed);
-    let range = |axis: usize| (from[axis]..to[axis]).collect::<Vec<u32>>();
-    let found = explore(&range(0), &range(1));
-    let judged = |at: u32| {
-        let (column, row) = (first[0] + at % columns, first[1] + at / columns);
-        let mut sum = Findings::default();
-        for y in row.saturating_sub(1).max(from[1])..(row + 2).min(to[1]) {
-            for x in column.saturating_sub(1).max(from[0])..(column + 2).min(to[0]) {
-                sum.add(&found[((y - from[1]) * wide + x - from[0]) as usize]);
-            }
-        }
-        sum.best(price)
-    };
-    let rays = surveyed.iter().chain(&found).map(Findings::rays).sum();
-    ((0..columns * rows).map(judged).collect(), rays)
 }
 
 fn check(settings: &Settings) -> Result<(), RenderError> {
@@ -320,11 +236,7 @@ fn render_tile<P: Policy>(
                     return None;
                 }
                 let address = SampleAddress::new(seed, x, y, sample).of_sequence(settings.sequence);
-                let [dx, dy] = filter.sample(address.pair(NodeKey::ROOT, Purpose::Film));
-                let lens = || address.pair(NodeKey::ROOT, Purpose::Lens);
-                let ray = scene.camera.ray(f64::from(x) + dx, f64::from(y) + dy, settings.size, lens);
-                let radiance = walker.radiance(ray, &address);
-                let rounded = round(settings.clamp.map_or(radiance, |most| clamped(radiance, most)));
+                let rounded = walker.sample(filter, [x, y], &address);
                 if rounded.is_none() {
                     walker.stats.dropped += 1;
                     walker.stats.first_dropped.get_or_insert(Dropped { y, x, sample });
@@ -345,16 +257,4 @@ fn render_tile<P: Policy>(
         }
     }
     Some((pixels, walker.stats))
-}
-
-/// No channel above `most`. What is not finite stays so, and is left out.
-fn clamped(radiance: Rgb, most: f64) -> Rgb {
-    let channel = |c: f64| if c > most && c.is_finite() { most } else { c };
-    Rgb::from_array(radiance.to_array().map(channel))
-}
-
-/// A sample as the film takes it, rounded once; `None` when it is not finite or negative.
-fn round(radiance: Rgb) -> Option<[f32; 3]> {
-    let rounded = radiance.to_array().map(|c| c as f32);
-    rounded.iter().all(|c| c.is_finite() && *c >= 0.0).then_some(rounded)
 }

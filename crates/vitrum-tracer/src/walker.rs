@@ -4,6 +4,7 @@
 //! first. Two ways of following light share all that, and differ in what they do at a hit: see the [`Policy`] of
 //! [`Whitted`](crate::whitted::Whitted) and of [`Path`](crate::path::Path).
 
+use crate::filter::FilterSampler;
 use crate::light_sampler::LightSampler;
 use crate::plan::Plan;
 use crate::ray_tree::{Children, Node, RayTree};
@@ -13,7 +14,7 @@ use crate::stats::Stats;
 use vitrum_bxdf::{Bxdf, Sample, Split, TransportMode};
 use vitrum_geometry::{Query, Side, SurfaceInteraction};
 use vitrum_materials::Scattering;
-use vitrum_math::{DVec3, Frame, Ray, Rgb, SampleAddress};
+use vitrum_math::{DVec3, Frame, NodeKey, Purpose, Ray, Rgb, SampleAddress};
 
 /// A way of following light.
 pub(crate) trait Policy: Sized {
@@ -51,8 +52,10 @@ pub(crate) struct Walker<'s, P: Policy> {
     pub(crate) branching: Branching,
     tree: RayTree<P::Memory>,
     pub(crate) stats: Stats,
-    /// Nodes of the present sample so far, where paths count them.
+    /// Nodes of the present sample so far, where paths count them, and what their rays cost beyond one each (see
+    /// [`Scene::ray_cost`]).
     pub(crate) nodes: u32,
+    pub(crate) dearer: f64,
     /// Weight of the subtrees of the present sample that were not followed.
     pub(crate) given_up: f64,
 }
@@ -66,12 +69,29 @@ impl<'s, P: Policy> Walker<'s, P> {
     ) -> Self {
         let (tree, stats) = (RayTree::default(), Stats::default());
         let branching = settings.branching;
-        Self { scene, lights, settings, plan, branching, tree, stats, nodes: 0, given_up: 0.0 }
+        Self { scene, lights, settings, plan, branching, tree, stats, nodes: 0, dearer: 0.0, given_up: 0.0 }
+    }
+
+    /// A sample of a pixel as the film takes it, rounded once; `None` when it is not finite or negative.
+    pub(crate) fn sample(
+        &mut self,
+        filter: &FilterSampler,
+        [x, y]: [u32; 2],
+        address: &SampleAddress,
+    ) -> Option<[f32; 3]> {
+        let [dx, dy] = filter.sample(address.pair(NodeKey::ROOT, Purpose::Film));
+        let lens = || address.pair(NodeKey::ROOT, Purpose::Lens);
+        let ray = self.scene.camera.ray(f64::from(x) + dx, f64::from(y) + dy, self.settings.size, lens);
+        let radiance = self.radiance(ray, address).to_array();
+        // No channel above the largest value that counts; what is not finite stays so.
+        let most = self.settings.clamp.unwrap_or(f64::INFINITY);
+        let rounded = radiance.map(|c| if c > most && c.is_finite() { most as f32 } else { c as f32 });
+        rounded.iter().all(|c| c.is_finite() && *c >= 0.0).then_some(rounded)
     }
 
     /// The radiance that arrives along a camera ray.
     pub(crate) fn radiance(&mut self, ray: Ray, address: &SampleAddress) -> Rgb {
-        (self.nodes, self.given_up) = (0, 0.0);
+        (self.nodes, self.dearer, self.given_up) = (0, 0.0, 0.0);
         self.stats.camera_rays += 1;
         let mut tree = std::mem::take(&mut self.tree);
         tree.plant(Query::new(ray), P::ROOT);
