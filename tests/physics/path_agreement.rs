@@ -116,7 +116,7 @@ material = { type = "dielectric", ior = 1.5 }
 /// How a part of a picture branches is found out for it as for the whole, by any number of threads.
 #[test]
 fn a_part_branches_like_the_whole() {
-    for (name, text) in [SCENES[3], ("knot behind a pane", A_KNOT_BEHIND_A_PANE)] {
+    for (name, text) in [SCENES[0], SCENES[3], ("knot behind a pane", A_KNOT_BEHIND_A_PANE)] {
         let loaded = scene_text(name, text, Path::new("")).unwrap_or_else(|e| panic!("{name}: {e}"));
         let base = Settings { size: [90, 70], spp: 16, branching: Branching::Auto, ..loaded.settings };
         let whole = render(&loaded.scene, &base, &()).expect("valid settings");

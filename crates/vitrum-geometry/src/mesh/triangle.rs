@@ -422,6 +422,6 @@ mod tests {
             }
         }
         let isas = Isa::all().len();
-        assert!(met > 90_000 * isas && certain > 7_000 * isas, "{met} {certain} of {isas}");
+        assert!(met > 100_000 * isas && certain > 7_000 * isas, "{met} {certain} of {isas}");
     }
 }
