@@ -5,8 +5,7 @@
 //! inside glass asks.
 
 use crate::directions::{INPUTS, direction};
-use crate::measure::measure;
-use criterion::Criterion;
+use crate::measure::Harness;
 use std::hint::black_box;
 use std::sync::Arc;
 use vitrum::geometry::mesh::{MeshData, TriangleMesh};
@@ -15,9 +14,9 @@ use vitrum::geometry::{Aggregate, Counters, Object, Query, Shape};
 use vitrum::math::{DVec3, Ray, Transform, unit};
 use vitrum_testkit::Uniform;
 
-pub(crate) fn bench(criterion: &mut Criterion) {
-    shapes(criterion);
-    triangles(criterion);
+pub(crate) fn bench(harness: &mut Harness) {
+    shapes(harness);
+    triangles(harness);
 }
 
 /// Rays from outside.
@@ -43,9 +42,9 @@ fn leaving() -> Vec<Ray> {
         .collect()
 }
 
-fn shapes(criterion: &mut Criterion) {
-    fn shape(criterion: &mut Criterion, name: &str, rays: &[Ray], crossings: impl Fn(&Ray) -> Crossings) {
-        measure(criterion, &format!("intersect/{name}"), INPUTS, || {
+fn shapes(harness: &mut Harness) {
+    fn shape(harness: &mut Harness, name: &str, rays: &[Ray], crossings: impl Fn(&Ray) -> Crossings) {
+        harness.measure(&format!("intersect/{name}"), INPUTS, || {
             for ray in rays {
                 black_box(crossings(ray));
             }
@@ -54,24 +53,24 @@ fn shapes(criterion: &mut Criterion) {
     let (arriving, leaving) = (arriving(), leaving());
     let valid = "the shape is valid";
     let sphere = Sphere::new(DVec3::ZERO, 1.0).expect(valid);
-    shape(criterion, "sphere", &arriving, |ray| sphere.crossings(ray, None));
+    shape(harness, "sphere", &arriving, |ray| sphere.crossings(ray, None));
     let inward = Some(Leaving { face: 0, behind: true });
-    shape(criterion, "sphere, leaving", &leaving, |ray| sphere.crossings(ray, inward));
+    shape(harness, "sphere, leaving", &leaving, |ray| sphere.crossings(ray, inward));
     let plane = Plane::new(DVec3::ZERO, DVec3::Y).expect(valid);
-    shape(criterion, "plane", &arriving, |ray| plane.crossings(ray, None));
+    shape(harness, "plane", &arriving, |ray| plane.crossings(ray, None));
     let disk = Disk::new(DVec3::ZERO, DVec3::Y, 1.0).expect(valid);
-    shape(criterion, "disk", &arriving, |ray| disk.crossings(ray, None));
+    shape(harness, "disk", &arriving, |ray| disk.crossings(ray, None));
     let corner = DVec3::new(-0.9, 0.0, -0.9);
     let rectangle = Rectangle::new(corner, DVec3::Z * 1.8, DVec3::X * 1.8).expect(valid);
-    shape(criterion, "rectangle", &arriving, |ray| rectangle.crossings(ray, None));
+    shape(harness, "rectangle", &arriving, |ray| rectangle.crossings(ray, None));
     let cuboid = Cuboid::new(DVec3::splat(-0.8), DVec3::splat(0.8)).expect(valid);
-    shape(criterion, "box", &arriving, |ray| cuboid.crossings(ray, None));
+    shape(harness, "box", &arriving, |ray| cuboid.crossings(ray, None));
     let cylinder = Cylinder::new(DVec3::Y * -0.9, DVec3::Y * 0.9, 0.8, true).expect(valid);
-    shape(criterion, "cylinder", &arriving, |ray| cylinder.crossings(ray, None));
+    shape(harness, "cylinder", &arriving, |ray| cylinder.crossings(ray, None));
 }
 
 /// The least that a mesh costs: into its frame, one leaf, two triangles (a square in the plane y = 0).
-fn triangles(criterion: &mut Criterion) {
+fn triangles(harness: &mut Harness) {
     let corner = |x, z| DVec3::new(x, 0.0, z) * 0.9;
     let positions = vec![corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)];
     let data = MeshData { positions, triangles: vec![[0, 1, 2], [0, 2, 3]], ..MeshData::default() };
@@ -79,7 +78,7 @@ fn triangles(criterion: &mut Criterion) {
     let object = Object::new(mesh, &Transform::IDENTITY, false).expect("the mesh is valid");
     let aggregate = Aggregate::new(vec![object]);
     let rays = arriving();
-    measure(criterion, "intersect/mesh of 2 triangles", INPUTS, || {
+    harness.measure("intersect/mesh of 2 triangles", INPUTS, || {
         for ray in &rays {
             black_box(aggregate.closest(&Query::new(*ray), &mut Counters::default()));
         }

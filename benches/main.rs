@@ -1,5 +1,6 @@
-//! The hot loop, layer by layer, measured with criterion. How to run and compare: `benches/README.md`.
+//! The hot loop, layer by layer: times by criterion, or counts of instructions. How to run and compare: `benches/README.md`.
 
+mod bumpy;
 mod directions;
 mod intersect;
 mod measure;
@@ -10,11 +11,13 @@ mod refraction;
 mod sampler;
 mod scattering;
 
-use criterion::{criterion_group, criterion_main};
-
-criterion_group! {
-    name = hot_loop;
-    config = measure::short();
-    targets = refraction::bench, scattering::bench, intersect::bench, query::bench, sampler::bench, pixel::bench
+fn main() {
+    let mut harness = measure::Harness::of_the_command_line();
+    refraction::bench(&mut harness);
+    scattering::bench(&mut harness);
+    intersect::bench(&mut harness);
+    query::bench(&mut harness);
+    sampler::bench(&mut harness);
+    pixel::bench(&mut harness);
+    harness.finish();
 }
-criterion_main!(hot_loop);

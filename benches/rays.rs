@@ -8,6 +8,7 @@
 //! | random | from anywhere within the bounds to anywhere; no two alike | closest |
 //! | shadow | where a primary ray hits, towards a lamp | occluded |
 
+use crate::bumpy::bumpy;
 use crate::directions::{INPUTS, direction};
 use std::path::Path;
 use std::sync::Arc;
@@ -94,6 +95,8 @@ pub(crate) fn scene(name: &str) -> Aggregate {
         "wine glass" => aggregate([trace(&gallery("wine_glass.obj"))]),
         "25 glasses" => glasses(),
         "gem" => aggregate([trace(&gallery("brilliant.obj"))]),
+        "100 000 triangles" => aggregate([trace(&bumpy(201, 250))]),
+        "1 000 000 triangles" => aggregate([trace(&bumpy(501, 1000))]),
         _ => unreachable!("no scene is called {name}"),
     }
 }
@@ -130,7 +133,11 @@ fn primary(scene: &Aggregate) -> Vec<Query> {
 }
 
 fn surfaces(scene: &Aggregate, rays: &[Query]) -> Vec<SurfaceInteraction> {
-    let hit = |ray| scene.closest(ray, &mut Counters::default()).map(|hit| scene.interaction(ray, &hit));
+    let hit = |ray| {
+        scene
+            .closest(ray, &mut Counters::default())
+            .map(|hit| scene.interaction(ray, &hit, &mut Counters::default()))
+    };
     rays.iter().filter_map(hit).collect()
 }
 

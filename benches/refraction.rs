@@ -5,16 +5,15 @@
 //! as in a picture.
 
 use crate::directions::{INPUTS, direction};
-use crate::measure::measure;
-use criterion::Criterion;
+use crate::measure::Harness;
 use std::hint::black_box;
 use vitrum::bxdf::{FresnelDielectric, Interface, PerfectTransmitter, Real, TransportMode, Vector};
 use vitrum::math::DVec3;
 use vitrum_testkit::Uniform;
 
-pub(crate) fn bench(criterion: &mut Criterion) {
-    refract(criterion);
-    split(criterion);
+pub(crate) fn bench(harness: &mut Harness) {
+    refract(harness);
+    split(harness);
 }
 
 /// Directions of the whole sphere.
@@ -35,36 +34,36 @@ fn glass<R: Real>() -> PerfectTransmitter<R> {
     PerfectTransmitter { kr: share(0.1), kt: share(0.9), interface }
 }
 
-fn refract(criterion: &mut Criterion) {
-    fn sides<R: Real>(criterion: &mut Criterion, precision: &str) {
+fn refract(harness: &mut Harness) {
+    fn sides<R: Real>(harness: &mut Harness, precision: &str) {
         let interface = glass::<R>().interface;
         for (side, above) in [("from outside", true), ("from inside", false)] {
             let directions: Vec<R::Vec3> = on_side(above)
                 .into_iter()
                 .map(|d| R::Vec3::new(R::from_f64(d.x), R::from_f64(d.y), R::from_f64(d.z)))
                 .collect();
-            measure(criterion, &format!("refract/{precision} {side}"), INPUTS, || {
+            harness.measure(&format!("refract/{precision} {side}"), INPUTS, || {
                 for wo in &directions {
                     black_box(interface.refract(*wo));
                 }
             });
         }
     }
-    sides::<f64>(criterion, "f64");
-    sides::<f32>(criterion, "f32");
+    sides::<f64>(harness, "f64");
+    sides::<f32>(harness, "f32");
 }
 
 /// The two children of a ray tree's node: with constant coefficients, and with Fresnel's.
-fn split(criterion: &mut Criterion) {
+fn split(harness: &mut Harness) {
     let directions = everywhere();
     let constant = glass::<f64>();
-    measure(criterion, "split/constant coefficients", INPUTS, || {
+    harness.measure("split/constant coefficients", INPUTS, || {
         for wo in &directions {
             black_box(black_box(&constant).split(*wo, TransportMode::Radiance));
         }
     });
     let fresnel = FresnelDielectric { interface: constant.interface };
-    measure(criterion, "split/Fresnel", INPUTS, || {
+    harness.measure("split/Fresnel", INPUTS, || {
         for wo in &directions {
             black_box(black_box(&fresnel).split(*wo, TransportMode::Radiance));
         }

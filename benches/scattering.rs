@@ -3,8 +3,7 @@
 //! Elements are calls. Directions are uniform over the sphere, so that half of the pairs lie on different sides.
 
 use crate::directions::{INPUTS, direction};
-use crate::measure::measure;
-use criterion::Criterion;
+use crate::measure::Harness;
 use std::hint::black_box;
 use vitrum::bxdf::{
     Bxdf, ComplexIndex, Conductor, FresnelDielectric, Ggx, GlossySpecular, Interface, Lambertian,
@@ -24,23 +23,55 @@ struct Input {
     u: [f64; 2],
 }
 
-pub(crate) fn bench(criterion: &mut Criterion) {
+pub(crate) fn bench(harness: &mut Harness) {
     let inputs = inputs();
     for (name, model) in models() {
         if !model.is_specular() {
-            measure(criterion, &format!("eval/{name}"), INPUTS, || {
+            harness.measure(&format!("eval/{name}"), INPUTS, || {
                 for i in &inputs {
                     black_box(black_box(&model).eval(i.wo, i.wi, MODE));
                 }
             });
         }
-        measure(criterion, &format!("sample/{name}"), INPUTS, || {
+        harness.measure(&format!("sample/{name}"), INPUTS, || {
             for i in &inputs {
                 black_box(black_box(&model).sample(i.wo, i.uc, i.u, MODE));
             }
         });
     }
-    dispatch(criterion, &inputs);
+    splits(harness, &inputs);
+    rough(harness, &inputs);
+    dispatch(harness, &inputs);
+}
+
+/// The children that a ray tree follows; of solid glass they stand in `refraction.rs`.
+fn splits(harness: &mut Harness, inputs: &[Input]) {
+    let glass = Interface::new(1.0, 1.5).expect("both are indices");
+    let tinted = ThinDielectric { interface: glass, transmittance: DVec3::new(0.9, 0.8, 0.7) };
+    for (name, sheet) in [("clear sheet", ThinDielectric::clear(glass)), ("tinted sheet", tinted)] {
+        harness.measure(&format!("split/{name}"), INPUTS, || {
+            for i in inputs {
+                black_box(black_box(&sheet).split(i.wo));
+            }
+        });
+    }
+}
+
+/// What a rough surface costs beside `eval` and `sample`: making the model, and its density alone.
+fn rough(harness: &mut Harness, inputs: &[Input]) {
+    let glass = Interface::new(1.0, 1.5).expect("both are indices");
+    let roughness = Ggx::new(0.3, 0.3).expect("both are roughnesses");
+    harness.measure("new/rough glass", INPUTS, || {
+        for _ in inputs {
+            black_box(RoughDielectric::new(black_box(glass), black_box(roughness)));
+        }
+    });
+    let model = RoughDielectric::new(glass, roughness);
+    harness.measure("pdf/rough glass", INPUTS, || {
+        for i in inputs {
+            black_box(black_box(&model).pdf(i.wo, i.wi));
+        }
+    });
 }
 
 fn inputs() -> Vec<Input> {
@@ -109,7 +140,7 @@ scatter! {
 
 /// `sample` of the same models as values of an enum, and behind pointers: all smooth glass, and each another than the one
 /// before. (The highlight is left out: it takes ten times as long as the others.)
-fn dispatch(criterion: &mut Criterion, inputs: &[Input]) {
+fn dispatch(harness: &mut Harness, inputs: &[Input]) {
     let models: Vec<Bxdf<f64>> =
         models().into_iter().filter(|(name, _)| *name != "highlight").map(|(_, model)| model).collect();
     let mut uniform = Uniform::new(2);
@@ -117,13 +148,13 @@ fn dispatch(criterion: &mut Criterion, inputs: &[Input]) {
         inputs.iter().map(|_| models[(uniform.number() * models.len() as f64) as usize]).collect();
     let glass = models.iter().find(|model| matches!(model, Bxdf::FresnelDielectric(_))).expect("it is there");
     for (name, models) in [("all smooth glass", vec![*glass; inputs.len()]), ("mixed", mixed)] {
-        measure(criterion, &format!("dispatch/enum, {name}"), INPUTS, || {
+        harness.measure(&format!("dispatch/enum, {name}"), INPUTS, || {
             for (model, i) in models.iter().zip(inputs) {
                 black_box(model.sample(i.wo, i.uc, i.u, MODE));
             }
         });
         let boxes: Vec<Box<dyn Scatter>> = models.iter().map(boxed).collect();
-        measure(criterion, &format!("dispatch/dyn, {name}"), INPUTS, || {
+        harness.measure(&format!("dispatch/dyn, {name}"), INPUTS, || {
             for (model, i) in boxes.iter().zip(inputs) {
                 black_box(model.sample(i));
             }

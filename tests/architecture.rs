@@ -13,8 +13,8 @@ use std::path::{Path, PathBuf};
 use toml::de::{DeTable, DeValue};
 
 /// Crates that know no files, no environment, no clock and no terminal.
-const BELOW_IO: [&str; 5] =
-    ["vitrum-math", "vitrum-geometry", "vitrum-bxdf", "vitrum-materials", "vitrum-tracer"];
+const BELOW_IO: [&str; 6] =
+    ["vitrum-math", "vitrum-geometry", "vitrum-bxdf", "vitrum-materials", "vitrum-tracer", "vitrum-measure"];
 
 /// What gives such knowledge away in a source file. (A `Duration` is no clock.)
 const FORBIDDEN: [&str; 13] = [

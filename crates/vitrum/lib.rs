@@ -10,6 +10,7 @@
 //! | [`geometry`] | `vitrum-geometry` | shapes, meshes, mesh health, ray queries |
 //! | [`materials`] | `vitrum-materials` | materials and textures |
 //! | [`tracer`] | `vitrum-tracer` | scene, plan, camera, film, lights, ray tree |
+//! | [`measure`] | `vitrum-measure` | errors of images, curves of error against seconds |
 //! | [`io`] | `vitrum-io` | scene files, OBJ, images |
 //!
 //! A glass sphere in front of a white sky, in memory:
@@ -46,4 +47,5 @@ pub use vitrum_geometry as geometry;
 pub use vitrum_io as io;
 pub use vitrum_materials as materials;
 pub use vitrum_math as math;
+pub use vitrum_measure as measure;
 pub use vitrum_tracer as tracer;

@@ -121,7 +121,7 @@ fn middle(aggregate: &Aggregate, ray: Ray, uniform: &mut Uniform) -> Option<DVec
 /// The first wall, and how far it is.
 fn look(aggregate: &Aggregate, query: &Query) -> Option<(SurfaceInteraction, f64)> {
     let hit = aggregate.closest(query, &mut Counters::default())?;
-    Some((aggregate.interaction(query, &hit), hit.t))
+    Some((aggregate.interaction(query, &hit, &mut Counters::default()), hit.t))
 }
 
 impl Case {
@@ -155,7 +155,7 @@ impl Case {
             if hit.t > *first.get_or_insert(hit.t) + 1e-6 * size {
                 return false;
             }
-            if !self.aggregate.interaction(&query, &hit).front {
+            if !self.aggregate.interaction(&query, &hit, &mut Counters::default()).front {
                 return true;
             }
             query.pass(hit.t, hit.object, hit.face);

@@ -13,14 +13,16 @@
 
 #![expect(clippy::print_stdout, reason = "a table is what this program is for")]
 
-#[path = "../../../examples/gallery_meshes/brilliant.rs"]
+#[path = "../../../examples/scene_files/brilliant.rs"]
 #[expect(dead_code, reason = "the names of files are not needed here")]
 mod brilliant;
-#[path = "../../../examples/gallery_meshes/circle.rs"]
+#[path = "../../bumpy.rs"]
+mod bumpy;
+#[path = "../../../examples/scene_files/circle.rs"]
 mod circle;
 mod library;
 mod meshes;
-#[path = "../../../examples/gallery_meshes/wine_glass.rs"]
+#[path = "../../../examples/scene_files/wine_glass.rs"]
 #[expect(dead_code, reason = "the names of files are not needed here")]
 mod wine_glass;
 
@@ -202,8 +204,11 @@ fn sets(aggregate: &Aggregate) -> Vec<Set> {
     let (centre, size) = (bounds.centre(), bounds.extent().max_element());
     let mut uniform = Uniform::new(9);
     let mut counters = Counters::default();
-    let mut surface_of =
-        |query: &Query| aggregate.closest(query, &mut counters).map(|hit| aggregate.interaction(query, &hit));
+    let mut surface_of = |query: &Query| {
+        aggregate
+            .closest(query, &mut counters)
+            .map(|hit| aggregate.interaction(query, &hit, &mut Counters::default()))
+    };
 
     // A square picture from in front and above, as many pixels as rays, in rows.
     let eye = centre + unit(DVec3::new(0.4, 0.5, 1.0)) * (1.6 * size);

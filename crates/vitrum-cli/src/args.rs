@@ -7,7 +7,7 @@ use std::time::Duration;
 use vitrum_io::load::{ModelMaterial, ModelOptions};
 use vitrum_io::scene::Normals;
 use vitrum_math::Sequence;
-use vitrum_tracer::{Branching, Crop, Filter, Integrator, LightSampling, Target};
+use vitrum_tracer::{Branching, Crop, Filter, Integrator, LightSampling, NoSkip, Target};
 
 /// Renders glass, accurately and fast.
 #[derive(Debug, Parser)]
@@ -48,6 +48,12 @@ pub(crate) enum Command {
     Render(Render),
     /// Say what is in a scene or model, what is wrong with it, and what rendering it needs
     Inspect(Inspect),
+    /// Say how far a picture is from its reference
+    Compare(Compare),
+    /// Measure run time against error on scenes with references
+    Bench(Bench),
+    /// Draw results of `bench` as one page
+    Page(Page),
 }
 
 #[derive(Debug, Args)]
@@ -104,6 +110,10 @@ pub(crate) struct Render {
     #[arg(long, value_enum, value_name = "S", default_value_t = SequenceChoice::Sobol)]
     pub(crate) sequence: SequenceChoice,
 
+    /// Run what the scene does not need, for study: the picture is the same, later. All that can be run so, or what is listed
+    #[arg(long, value_enum, value_name = "S", value_delimiter = ',', num_args = 0.., require_equals = true)]
+    pub(crate) no_skip: Option<Vec<NoSkipChoice>>,
+
     /// Which points of the film a pixel is the mean of, in place of the scene's choice
     #[arg(long, value_enum, value_name = "F")]
     pub(crate) filter: Option<FilterChoice>,
@@ -142,6 +152,10 @@ pub(crate) struct Render {
     #[arg(long)]
     pub(crate) repair: bool,
 
+    /// File for what the summary says, as JSON: seconds and counts
+    #[arg(long, value_name = "FILE")]
+    pub(crate) report: Option<PathBuf>,
+
     /// No progress, no warnings, no summary
     #[arg(short, long)]
     pub(crate) quiet: bool,
@@ -161,6 +175,81 @@ pub(crate) struct Inspect {
 
     #[command(flatten)]
     pub(crate) model: Model,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Compare {
+    /// Picture: .exr or .hdr, linear
+    pub(crate) image: PathBuf,
+
+    /// What it should be: .exr or .hdr, of the same size
+    pub(crate) reference: PathBuf,
+
+    /// Picture of the differences to write: .png shows what an eye sees of them (FLIP; dark is none), .exr holds image minus
+    /// reference
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Exposure in stops of both pictures, for what an eye sees of their difference
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, value_parser = stops, allow_negative_numbers = true)]
+    pub(crate) exposure: f64,
+
+    /// The numbers as one line of JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Bench {
+    /// Scenes (.toml), each with a reference beside it: references/NAME.exr [default: all of scenes/bench]
+    pub(crate) scenes: Vec<PathBuf>,
+
+    /// Folder for the results, without any yet: results.jsonl, results.csv, index.html, and pictures of the first seed
+    #[arg(short, long, value_name = "FOLDER", default_value = "bench-results")]
+    pub(crate) output: PathBuf,
+
+    /// Two programs to compare, in place of this one: every run of one is followed by the same run of the other
+    #[arg(long, num_args = 2, value_names = ["BEFORE", "AFTER"])]
+    pub(crate) against: Vec<PathBuf>,
+
+    /// Samples per pixel of the runs, in place of 1, 2, 4 and so on
+    #[arg(long, value_name = "N", value_delimiter = ',', value_parser = whole::<1, 1_000_000>, allow_negative_numbers = true)]
+    pub(crate) spp: Vec<u32>,
+
+    /// Samples are doubled until a run takes this long, or the reference is no longer good enough to tell its error
+    #[arg(long, value_name = "TIME", value_parser = duration, default_value = "4s")]
+    pub(crate) time: Duration,
+
+    /// Runs of each number of samples, each with its own seed
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = whole::<1, 1000>, allow_negative_numbers = true)]
+    pub(crate) seeds: u32,
+
+    /// Threads of each run, at most 1024; 0 for as many as the machine has
+    #[arg(short, long, value_name = "N", default_value_t = 0, value_parser = whole::<0, 1024>, allow_negative_numbers = true)]
+    pub(crate) threads: u32,
+
+    /// More results to draw on the page (.jsonl), such as those of other renderers
+    #[arg(long, value_name = "FILE")]
+    pub(crate) include: Vec<PathBuf>,
+
+    /// Makes the references of the scenes instead: the mean of as many renders as there are --seeds, of --spp samples each
+    #[arg(long, requires = "spp", conflicts_with_all = ["against", "include", "output", "time"])]
+    pub(crate) make_references: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Page {
+    /// Results (.jsonl); their pictures lie where they say, relative to them
+    #[arg(required = true)]
+    pub(crate) results: Vec<PathBuf>,
+
+    /// Page to write: one HTML file that needs no other
+    #[arg(short, long, value_name = "FILE", default_value = "index.html")]
+    pub(crate) output: PathBuf,
+
+    /// Print the table of the page as Markdown, and write no page
+    #[arg(long)]
+    pub(crate) markdown: bool,
 }
 
 /// How a model (.obj) is shown; without effect on scenes.
@@ -186,6 +275,40 @@ pub(crate) enum ChannelChoice {
     Error,
     /// Samples taken: samples.Y
     Samples,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum NoSkipChoice {
+    /// Asking for light where there is none
+    Lights,
+    /// Adding black ambient light
+    Ambient,
+    /// What clear media absorb
+    Absorption,
+    /// Looking for sheets on the way to lights
+    ThinSheets,
+    /// A tree over few objects
+    ObjectTree,
+    /// Searching everything from inside a solid
+    Solids,
+}
+
+/// What `--no-skip` says: nothing, everything, or what it lists.
+pub(crate) fn no_skip(asked: Option<&[NoSkipChoice]>) -> NoSkip {
+    let mut found = NoSkip::default();
+    match asked {
+        None => {}
+        Some([]) => found = NoSkip::ALL,
+        Some(listed) => listed.iter().for_each(|choice| match choice {
+            NoSkipChoice::Lights => found.lights = true,
+            NoSkipChoice::Ambient => found.ambient = true,
+            NoSkipChoice::Absorption => found.absorption = true,
+            NoSkipChoice::ThinSheets => found.thin_sheets = true,
+            NoSkipChoice::ObjectTree => found.object_tree = true,
+            NoSkipChoice::Solids => found.solids = true,
+        }),
+    }
+    found
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -392,6 +515,11 @@ fn seed(text: &str) -> Result<u64, String> {
 fn unit_interval(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|n| (0.0..=1.0).contains(n));
     number.ok_or_else(|| "expected a number from 0 to 1".to_owned())
+}
+
+fn stops(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|n: &f64| n.abs() <= 100.0);
+    number.ok_or_else(|| "expected a number of stops from -100 to 100, such as 1".to_owned())
 }
 
 fn positive(text: &str) -> Result<f64, String> {

@@ -10,7 +10,7 @@ use std::process::ExitCode;
 use vitrum_io::load::{Loaded, MeshReport, SceneOptions};
 use vitrum_materials::{Material, Phong, Texture};
 use vitrum_math::{DVec3, Rgb};
-use vitrum_tracer::{Background, Branching, Falloff, Integrator, Light, Plan, Projection, Settings};
+use vitrum_tracer::{Background, Branching, Falloff, Feature, Integrator, Light, Plan, Projection, Settings};
 
 pub(crate) fn run(arguments: &Inspect) -> Result<ExitCode, Failure> {
     let loaded = input::load(
@@ -155,26 +155,26 @@ fn plan(out: &mut String, plan: &Plan, loaded: &Loaded, integrator: Integrator) 
             count(plan.environment_lights, "part")
         ),
     };
-    let rows: [(&str, bool, String); 15] = [
-        ("lights", plan.lights > 0, asked),
-        ("shadow rays", plan.shadow_lights > 0, format!("towards {}", count(plan.shadow_lights, "light"))),
-        ("ambient", plan.ambient, "added at each hit".to_owned()),
-        ("refraction", plan.dielectrics, "trees of rays".to_owned()),
-        ("absorption", plan.absorption, "a factor for each segment".to_owned()),
-        ("thin sheets", plan.thin_sheets, "light that is asked for goes through".to_owned()),
-        ("rough glass, metal", plan.rough, "scattered rays".to_owned()),
-        ("mirrors", plan.mirrors, "reflected rays".to_owned()),
-        ("textures", plan.textures, "looked up at each hit".to_owned()),
-        ("images", plan.images, "texture coordinates where one is seen".to_owned()),
-        ("meshes", plan.meshes > 0, count(plan.meshes, "mesh tree")),
-        ("smooth normals", plan.smooth_normals, "interpolated at each hit".to_owned()),
-        ("object tree", plan.object_tree, format!("over {}", count(objects, "object"))),
-        ("lens", plan.lens, "a point of it for each sample".to_owned()),
-        ("straight shadows", plan.straight_shadows, "through glass, undeflected (biased)".to_owned()),
-    ];
-    for (feature, used, how) in rows {
-        let how = if used { how } else { "skipped".to_owned() };
-        writeln!(out, "  {feature:<18} {how}")?;
+    for feature in Feature::ALL {
+        let how = match feature {
+            _ if !plan.needs(feature) => "skipped".to_owned(),
+            Feature::Lights => asked.clone(),
+            Feature::ShadowRays => format!("towards {}", count(plan.shadow_lights, "light")),
+            Feature::AmbientLight => "added at each hit".to_owned(),
+            Feature::Refraction => "trees of rays".to_owned(),
+            Feature::Absorption => "a factor for each segment".to_owned(),
+            Feature::ThinSheets => "light that is asked for goes through".to_owned(),
+            Feature::Roughness => "scattered rays".to_owned(),
+            Feature::Mirrors => "reflected rays".to_owned(),
+            Feature::Textures => "looked up at each hit".to_owned(),
+            Feature::Images => "texture coordinates where one is seen".to_owned(),
+            Feature::Meshes => count(plan.meshes, "mesh tree"),
+            Feature::SmoothNormals => "interpolated at each hit".to_owned(),
+            Feature::ObjectTree => format!("over {}", count(objects, "object")),
+            Feature::Lens => "a point of it for each sample".to_owned(),
+            Feature::StraightShadows => "through glass, undeflected (biased)".to_owned(),
+        };
+        writeln!(out, "  {:<18} {how}", feature.name())?;
     }
     if plan.invisible > 0 {
         writeln!(out, "  {:<18} {} left out", "invisible", count(plan.invisible, "object"))?;

@@ -4,14 +4,19 @@
 //! stopped by ^C or a termination signal, with the picture kept.
 
 mod args;
+mod bench;
+mod compare;
 #[cfg(test)]
 mod docs;
+mod errors;
 mod failure;
 mod input;
 mod inspect;
 mod interrupt;
+mod page;
 mod progress;
 mod render;
+mod report;
 mod store;
 mod summary;
 mod terminal;
@@ -40,6 +45,9 @@ fn run(command: &Command) -> Result<ExitCode, Failure> {
     match command {
         Command::Render(arguments) => render::run(arguments),
         Command::Inspect(arguments) => inspect::run(arguments),
+        Command::Compare(arguments) => compare::run(arguments),
+        Command::Bench(arguments) => bench::run(arguments),
+        Command::Page(arguments) => page::run(arguments),
     }
 }
 

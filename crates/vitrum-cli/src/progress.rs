@@ -54,12 +54,14 @@ impl<'s> Watcher<'s> {
 
 impl Progress for Watcher<'_> {
     fn advance(&self, samples: u64, rays: u64) {
+        // Nobody looks, so nobody asks the clock: renders without a terminal take the same instructions every time.
+        if self.bar.is_hidden() {
+            return;
+        }
         let rays = self.rays.fetch_add(rays, Ordering::Relaxed) + rays;
         self.bar.inc(samples);
-        if !self.bar.is_hidden() {
-            let rate = rays as f64 / self.elapsed().as_secs_f64().max(1e-3);
-            self.bar.set_message(format!("{:.1} million rays/s", rate / 1e6));
-        }
+        let rate = rays as f64 / self.elapsed().as_secs_f64().max(1e-3);
+        self.bar.set_message(format!("{:.1} million rays/s", rate / 1e6));
     }
 
     fn is_stopped(&self) -> bool {

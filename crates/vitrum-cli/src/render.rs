@@ -1,13 +1,15 @@
 //! `vitrum render`.
 
-use crate::args::{ChannelChoice, Render};
+use crate::args::{ChannelChoice, Render, no_skip};
 use crate::failure::Failure;
 use crate::input;
 use crate::interrupt::Interrupt;
 use crate::progress::Watcher;
+use crate::report::Report;
 use crate::store::Store;
 use crate::summary::{Phases, summary};
 use crate::terminal::say;
+use cpu_time::ProcessTime;
 use std::process::ExitCode;
 use std::time::Instant;
 use vitrum_io::image::{self, Channel, ImageView};
@@ -34,6 +36,9 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
             "--channels: only .exr holds channels beside radiance; choose such a name for -o",
         ));
     }
+    if let Some(report) = &arguments.report {
+        vitrum_io::check_text_writable(report)?;
+    }
     let interrupt = Interrupt::listen()?;
     let options = SceneOptions { repair: arguments.repair };
     let load = || input::load(arguments.scene.as_deref(), options, &arguments.model, arguments.size);
@@ -54,6 +59,7 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
     let store = Store::new(&arguments.output, &loaded, &settings)?;
     let film = if arguments.resume { Some(store.read()?) } else { None };
     let loading = start.elapsed();
+    let busy = ProcessTime::now();
 
     let area = settings.area();
     let is_limited = arguments.until.is_some() || arguments.time.is_some();
@@ -73,6 +79,7 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
     let rendering = rendering.map_err(|e| explain(e, &settings))?;
     watcher.finish();
     let rendering_time = watcher.elapsed();
+    let processors = busy.elapsed();
     let is_stopped = rendering.ended == Ended::Stopped;
     if is_stopped && rendering.stats.samples == 0 {
         if !arguments.quiet {
@@ -113,7 +120,10 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
     if was_begun && !is_kept {
         store.remove()?;
     }
-    let phases = Phases { loading, rendering: rendering_time, writing: writing.elapsed() };
+    let phases = Phases { loading, rendering: rendering_time, writing: writing.elapsed(), processors };
+    if let Some(path) = &arguments.report {
+        Report::new(&rendering, &phases).write(path)?;
+    }
 
     if !arguments.quiet {
         say(&summary(&rendering, is_limited, &phases, &arguments.output));
@@ -166,6 +176,7 @@ fn settings(loaded: &Loaded, arguments: &Render) -> Settings {
         light_sampling: arguments.light_sampling.into(),
         sequence: arguments.sequence.into(),
         clamp: arguments.clamp,
+        no_skip: no_skip(arguments.no_skip.as_deref()),
         cutoff: arguments.cutoff.unwrap_or(scene.cutoff),
         seed: arguments.seed.unwrap_or(scene.seed),
         threads: arguments.threads as usize,

@@ -10,6 +10,8 @@ pub(crate) struct Phases {
     pub(crate) loading: Duration,
     pub(crate) rendering: Duration,
     pub(crate) writing: Duration,
+    /// What all threads together were busy while rendering.
+    pub(crate) processors: Duration,
 }
 
 /// The summary, several lines. Why a render ended is said where something limits it beside the samples.

@@ -35,12 +35,39 @@ pub struct Hit {
     pub barycentrics: [f64; 2],
 }
 
-/// Rare events. They are harmless; many of them hint at a mesh with needles or overlaps.
+/// Rare events, which are harmless (many of them hint at a mesh with needles or overlaps), and uses of what not every scene has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
     /// Faces within the rounding error of a ray's origin that the ray can't cross, given the face that it leaves; they were
     /// ignored.
     pub neighbours_ignored: u64,
+    /// Questions to the tree of a mesh; counted in builds with debug assertions alone, like what follows.
+    pub mesh_searches: u64,
+    /// Questions to the tree of the objects.
+    pub tree_searches: u64,
+    /// Rays inside a solid that were asked of it first.
+    pub inner_searches: u64,
+    /// Points whose normal is one between those of corners.
+    pub interpolated_normals: u64,
+}
+
+impl Counters {
+    /// Adds what others have counted.
+    pub fn merge(&mut self, other: &Self) {
+        self.neighbours_ignored += other.neighbours_ignored;
+        self.mesh_searches += other.mesh_searches;
+        self.tree_searches += other.tree_searches;
+        self.inner_searches += other.inner_searches;
+        self.interpolated_normals += other.interpolated_normals;
+    }
+
+    /// Counts one where that is of use to tests, and is nothing elsewhere.
+    #[inline(always)]
+    pub(crate) fn count(which: &mut u64) {
+        if cfg!(debug_assertions) {
+            *which += 1;
+        }
+    }
 }
 
 /// The nearest hit so far: the smallest (t, object, face).
@@ -117,6 +144,7 @@ impl Task for Closest<'_> {
     fn run<P: Processor>(&mut self) {
         let Self { all, query, nearest, counters } = self;
         if let Some((solid, others)) = all.solids.around(query) {
+            Counters::count(&mut counters.inner_searches);
             all.objects[solid as usize].closest(query, solid, nearest, counters);
             // Unless the ray got out through a gap, the way to the hit lies within the bounds of the solid.
             if nearest.limit() < f64::INFINITY {
@@ -165,6 +193,7 @@ fn offer_tree(
     nearest: &mut Nearest,
     counters: &mut Counters,
 ) {
+    Counters::count(&mut counters.tree_searches);
     tree.boxes.run(&mut ClosestObject { tree, objects, query, nearest, counters });
 }
 
@@ -210,6 +239,7 @@ fn any_in_tree(
     limit: f64,
     counters: &mut Counters,
 ) -> bool {
+    Counters::count(&mut counters.tree_searches);
     tree.boxes.run(&mut AnyObject { tree, objects, query, limit, found: false, counters })
 }
 
@@ -294,13 +324,25 @@ impl Visitor<Numbers> for Among<'_, AnyObject<'_>> {
 impl Aggregate {
     /// Objects in the order of their ids.
     pub fn new(objects: Vec<Object>) -> Self {
+        Self::with_limit(objects, FLAT_LIMIT)
+    }
+
+    /// The same objects without what spares work. With `in_tree` all that are bounded stand in the tree, however few they are; with
+    /// `in_solids` a ray inside a solid searches everything. Finds the same.
+    pub fn searched_in_full(&self, in_tree: bool, in_solids: bool) -> Self {
+        let limit = if in_tree { 0 } else { FLAT_LIMIT };
+        let all = Self::with_limit(self.objects.clone(), limit);
+        if in_solids { Self { solids: Solids::none(self.objects.len()), ..all } } else { all }
+    }
+
+    fn with_limit(objects: Vec<Object>, flat_limit: usize) -> Self {
         let bounded: Vec<(u32, Bounds)> =
             (0u32..).zip(&objects).filter_map(|(id, o)| o.bounds().map(|b| (id, b))).collect();
         let bounds = bounded.iter().fold(Bounds::EMPTY, |all, (_, b)| all.union(*b));
         let solids = Solids::new(&objects, &bounded);
         let cost =
             |id: u32| if objects[id as usize].as_sphere().is_some() { SPHERE_COST } else { OTHER_COST };
-        let is_flat = bounded.iter().map(|(id, _)| cost(*id)).sum::<usize>() <= FLAT_LIMIT;
+        let is_flat = bounded.iter().map(|(id, _)| cost(*id)).sum::<usize>() <= flat_limit;
         let (mut spheres, mut meshes, mut flat) = (Vec::new(), Vec::new(), Vec::new());
         for (id, object) in (0u32..).zip(&objects).filter(|(_, o)| is_flat || o.bounds().is_none()) {
             if let Some(sphere) = object.as_sphere() {
@@ -354,8 +396,8 @@ impl Aggregate {
 
     /// The point of a hit that [`closest`](Self::closest) found for the same query.
     #[inline]
-    pub fn interaction(&self, query: &Query, hit: &Hit) -> SurfaceInteraction {
-        self.objects[hit.object as usize].interaction(query, hit)
+    pub fn interaction(&self, query: &Query, hit: &Hit, counters: &mut Counters) -> SurfaceInteraction {
+        self.objects[hit.object as usize].interaction(query, hit, counters)
     }
 
     /// The texture coordinates of a hit, whose [point](Self::interaction) is given. For objects [with](Object::with_uvs) any.
@@ -394,7 +436,8 @@ mod tests {
         let mut counters = Counters::default();
         let camera = Query::new(Ray::new(DVec3::new(-5.0, 1.5, 0.0), DVec3::X));
         let hit = aggregate.closest(&camera, &mut counters).expect("the first sphere");
-        let mut query = aggregate.interaction(&camera, &hit).leave(DVec3::X, Side::Transmitted);
+        let mut query =
+            aggregate.interaction(&camera, &hit, &mut Counters::default()).leave(DVec3::X, Side::Transmitted);
         let exit = aggregate.closest(&query, &mut counters).expect("its far wall");
         assert_eq!((exit.object, exit.t), (0, 2.0));
         query.pass(exit.t, exit.object, exit.face);

@@ -445,7 +445,7 @@ mod tests {
                         // At the very border.
                         continue;
                     };
-                    let surface = aggregate.interaction(&query, &hit);
+                    let surface = aggregate.interaction(&query, &hit, &mut Counters::default());
                     assert!(hit.t < sample.distance * (1.0 + 1e-6));
                     if hit.t > sample.distance * (1.0 - 1e-6) {
                         seen += 1.0 / sample.pdf;
@@ -574,7 +574,9 @@ mod tests {
             let density = |direction: DVec3| {
                 let query = Query::new(Ray::new(from, direction));
                 let hit = aggregate.closest(&query, &mut Counters::default());
-                hit.map_or(0.0, |hit| sampler.pdf(from, &aggregate.interaction(&query, &hit)))
+                hit.map_or(0.0, |hit| {
+                    sampler.pdf(from, &aggregate.interaction(&query, &hit, &mut Counters::default()))
+                })
             };
             // The silhouette is where samples may miss by their rounding.
             let sample = |uniform: &mut Uniform| sampler.sample(from, uniform.pair()).map(|s| s.towards);

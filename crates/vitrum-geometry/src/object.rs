@@ -196,7 +196,12 @@ impl Object {
 
     /// The point of a hit.
     #[inline]
-    pub(crate) fn interaction(&self, query: &Query, hit: &Hit) -> SurfaceInteraction {
+    pub(crate) fn interaction(
+        &self,
+        query: &Query,
+        hit: &Hit,
+        counters: &mut Counters,
+    ) -> SurfaceInteraction {
         let mut shading = None;
         let mut error = 0.0;
         let moved;
@@ -217,7 +222,10 @@ impl Object {
             Shape::Mesh(mesh) => {
                 let p = mesh.point(hit.face, hit.barycentrics);
                 error = self.origin_error(mesh, &p);
-                shading = mesh.is_smooth().then_some(p.ns);
+                if mesh.is_smooth() {
+                    Counters::count(&mut counters.interpolated_normals);
+                    shading = Some(p.ns);
+                }
                 SurfacePoint { point: p.point, normal: p.ng }
             }
         };

@@ -21,6 +21,11 @@ const WIDENED: (f64, f64) = (1e-6, 1e-14);
 pub(crate) struct Solids(Vec<Option<Vec<u32>>>);
 
 impl Solids {
+    /// As if none of so many objects had an inside.
+    pub(crate) fn none(objects: usize) -> Self {
+        Self(vec![None; objects])
+    }
+
     /// Of all objects and, by id, the bounds of those that have any.
     pub(crate) fn new(objects: &[Object], bounded: &[(u32, Bounds)]) -> Self {
         let mut within: Vec<Vec<u32>> = (0..objects.len() as u32).map(|id| vec![id]).collect();

@@ -67,7 +67,7 @@ mod tests {
     fn seen(all: &Aggregate, from: DVec3, towards: DVec3) -> DVec2 {
         let query = Query::new(Ray::new(from, unit(towards)));
         let hit = all.closest(&query, &mut Counters::default()).expect("it is met");
-        let point = all.interaction(&query, &hit).point;
+        let point = all.interaction(&query, &hit, &mut Counters::default()).point;
         let uv = all.uv(&hit, point);
         let again = all.uv_at(hit.object, hit.face, point);
         assert!((again - uv).length() < 1e-12, "{again} {uv}: the same from the point alone");
@@ -195,7 +195,7 @@ mod tests {
             let from = transform.world_point(DVec3::new(1.0, 2.0, 3.0));
             let query = Query::new(Ray::new(from, -DVec3::Z));
             let hit = all.closest(&query, &mut Counters::default()).expect("it is met");
-            let point = all.interaction(&query, &hit).point;
+            let point = all.interaction(&query, &hit, &mut Counters::default()).point;
             // A quarter of the way to the second corner, half of the way to the third.
             assert_uv(all.uv(&hit, point), 1.0, -2.0);
             assert!((all.uv_at(0, 0, point) - DVec2::new(1.0, -2.0)).length() < 1e-8);

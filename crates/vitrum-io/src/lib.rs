@@ -16,3 +16,23 @@ pub mod image;
 pub mod load;
 pub mod obj;
 pub mod scene;
+
+use image::WriteError;
+use std::io::Write;
+use std::path::Path;
+
+/// Writes a text: whole, or not at all.
+///
+/// # Errors
+/// When it cannot be written. The file that was there before, if any, is then unchanged.
+pub fn write_text(path: &Path, text: &str) -> Result<(), WriteError> {
+    atomic::replace(path, |file| file.write_all(text.as_bytes()))
+}
+
+/// Whether a text can be written under this name, as far as can be known beforehand.
+///
+/// # Errors
+/// When it cannot.
+pub fn check_text_writable(path: &Path) -> Result<(), WriteError> {
+    atomic::check(path)
+}

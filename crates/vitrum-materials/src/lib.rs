@@ -19,4 +19,4 @@ pub use index::{IndexOfRefraction, InvalidIndex};
 pub use material::{Dielectric, Material, Media, Phong, Transparent};
 pub use metal::Metal;
 pub use scattering::Scattering;
-pub use texture::{Axes, Checker, Texture};
+pub use texture::{Axes, Checker, Place, Texture};

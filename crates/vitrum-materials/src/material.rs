@@ -1,12 +1,12 @@
 //! The closed family of materials.
 
 use crate::scattering::{Scattering, unless_zero};
-use crate::{Absorption, ImageTexture, Texture};
+use crate::{Absorption, ImageTexture, Place, Texture};
 use vitrum_bxdf::{
     Bxdf, Conductor, FresnelDielectric, Ggx, GlossySpecular, Interface, Lambertian, PerfectSpecular,
     PerfectTransmitter, RoughDielectric, ThinDielectric,
 };
-use vitrum_math::{DVec2, DVec3, Rgb};
+use vitrum_math::Rgb;
 
 /// What a surface is made of.
 #[derive(Clone, Debug, PartialEq)]
@@ -137,8 +137,8 @@ impl Phong {
         Self { colour: Texture::Constant(Rgb::ONE), ka: 0.0, kd: 0.0, ks: Rgb::ZERO, exponent: 1.0 };
 
     #[inline(always)]
-    fn scattering(&self, point: DVec3, uv: impl FnOnce() -> DVec2) -> Scattering {
-        let colour = if self.ka == 0.0 && self.kd == 0.0 { Rgb::ZERO } else { self.colour.at(point, uv) };
+    fn scattering(&self, place: &mut impl Place) -> Scattering {
+        let colour = if self.ka == 0.0 && self.kd == 0.0 { Rgb::ZERO } else { self.colour.at(place) };
         let reflectance = colour * self.kd;
         let ks = self.ks;
         Scattering {
@@ -155,26 +155,24 @@ impl Phong {
 }
 
 impl Material {
-    /// The models at a point of the world, whose texture coordinates `uv` works out where an image needs them.
+    /// The models at a place, which is asked for its point and its texture coordinates where a texture needs them.
     // Always, because what it returns is large and would be copied.
     #[inline(always)]
-    pub fn scattering(&self, point: DVec3, uv: impl FnOnce() -> DVec2) -> Scattering {
+    pub fn scattering(&self, place: &mut impl Place) -> Scattering {
         match self {
-            Self::Matte(phong) | Self::Phong(phong) => phong.scattering(point, uv),
+            Self::Matte(phong) | Self::Phong(phong) => phong.scattering(place),
             Self::Reflective { phong, kr } => Scattering {
                 body: unless_zero(*kr, Bxdf::PerfectSpecular(PerfectSpecular { kr: *kr })),
-                ..phong.scattering(point, uv)
+                ..phong.scattering(place)
             },
             Self::Transparent(t) => {
                 let glass = PerfectTransmitter { kr: t.kr, kt: t.kt, interface: t.interface };
-                Scattering { body: Some(Bxdf::PerfectTransmitter(glass)), ..t.phong.scattering(point, uv) }
+                Scattering { body: Some(Bxdf::PerfectTransmitter(glass)), ..t.phong.scattering(place) }
             }
             Self::Dielectric(glass) => Scattering::of(glass.bxdf),
             Self::Thin(sheet) => Scattering::of(Bxdf::ThinDielectric(*sheet)),
             Self::Conductor(metal) => Scattering::of(Bxdf::Conductor(*metal)),
-            Self::Emissive { radiance } => {
-                Scattering { emitted: radiance.at(point, uv), ..Scattering::BLACK }
-            }
+            Self::Emissive { radiance } => Scattering { emitted: radiance.at(place), ..Scattering::BLACK },
         }
     }
 
@@ -280,6 +278,7 @@ mod tests {
     use super::*;
     use crate::{Encoding, Image};
     use std::sync::Arc;
+    use vitrum_math::{DVec2, DVec3};
 
     fn clear(ior: f64) -> Transparent {
         let interface = Interface::new(1.0, ior).expect("valid");
@@ -297,12 +296,12 @@ mod tests {
 
     #[test]
     fn zero_coefficients_leave_no_parts() {
-        let scattering =
-            Material::Matte(Phong { ka: 1.0, ..Phong::NONE }).scattering(DVec3::ZERO, || unreachable!());
+        let scattering = Material::Matte(Phong { ka: 1.0, ..Phong::NONE })
+            .scattering(&mut (DVec3::ZERO, || -> DVec2 { unreachable!() }));
         assert!(!scattering.answers_lights() && scattering.specular().is_none());
         assert_eq!(scattering.ambient, Rgb::ONE);
         let scattering = Material::Reflective { phong: Phong::NONE, kr: Rgb::ZERO }
-            .scattering(DVec3::ZERO, || unreachable!());
+            .scattering(&mut (DVec3::ZERO, || -> DVec2 { unreachable!() }));
         assert_eq!(scattering, Scattering::BLACK);
     }
 
@@ -313,10 +312,11 @@ mod tests {
         let colour = Texture::Image(ImageTexture::new(Arc::new(image)));
         let asks = |material: &Material| {
             let mut asked = false;
-            material.scattering(DVec3::ZERO, || {
+            let uv = || {
                 asked = true;
                 DVec2::ZERO
-            });
+            };
+            material.scattering(&mut (DVec3::ZERO, uv));
             assert_eq!(asked, material.image().is_some());
             asked
         };
@@ -326,7 +326,7 @@ mod tests {
         assert!(!asks(&Material::Reflective { phong: with(0.0), kr: Rgb::ONE }));
         assert!(!asks(&Material::Transparent(Transparent { phong: with(0.0), ..clear(1.5) })));
         assert!(!asks(&Material::Matte(Phong { kd: 0.5, ..Phong::NONE })));
-        let red = Material::Matte(with(0.5)).scattering(DVec3::ZERO, || DVec2::ZERO);
+        let red = Material::Matte(with(0.5)).scattering(&mut (DVec3::ZERO, || DVec2::ZERO));
         assert_eq!(red.diffuse.map(|d| d.reflectance), Some(Rgb::X * 0.5));
     }
 }

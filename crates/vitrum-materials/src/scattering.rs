@@ -147,6 +147,7 @@ pub(crate) fn unless_zero<T>(coefficient: Rgb, part: T) -> Option<T> {
 mod tests {
     use super::*;
     use crate::{Material, Phong, Texture};
+    use vitrum_math::DVec2;
 
     /// With the same numbers, sampling a mixture and integrating its value over the hemisphere give the same share: both by
     /// a million stratified points.
@@ -154,7 +155,8 @@ mod tests {
     fn a_mixture_is_sampled_as_it_is_evaluated() {
         let colour = Texture::Constant(Rgb::new(0.3, 0.6, 0.2));
         let phong = Phong { colour, kd: 0.5, ks: Rgb::splat(0.9), exponent: 20.0, ..Phong::NONE };
-        let scattering = Material::Phong(phong).scattering(DVec3::ZERO, || unreachable!());
+        let scattering =
+            Material::Phong(phong).scattering(&mut (DVec3::ZERO, || -> DVec2 { unreachable!() }));
         let wo = DVec3::new(0.6, 0.0, 0.8);
         let (mut sampled, mut integrated, mut densities) = (Rgb::ZERO, Rgb::ZERO, 0.0);
         let edge = 100;

@@ -47,14 +47,35 @@ pub struct Axes {
     pub z: bool,
 }
 
+/// A place on a surface, as textures ask for it: a colour that is the same everywhere asks for nothing.
+pub trait Place {
+    /// The point in the world.
+    fn point(&mut self) -> DVec3;
+    /// Its texture coordinates.
+    fn uv(&mut self) -> DVec2;
+}
+
+/// A point, and what works out its texture coordinates.
+impl<F: FnMut() -> DVec2> Place for (DVec3, F) {
+    #[inline(always)]
+    fn point(&mut self) -> DVec3 {
+        self.0
+    }
+
+    #[inline(always)]
+    fn uv(&mut self) -> DVec2 {
+        self.1()
+    }
+}
+
 impl Texture {
-    /// The colour at a point of the world, whose texture coordinates `uv` works out where they are needed.
+    /// The colour at a place, which is asked for what is needed of it.
     #[inline]
-    pub fn at(&self, point: DVec3, uv: impl FnOnce() -> DVec2) -> Rgb {
+    pub fn at(&self, place: &mut impl Place) -> Rgb {
         match self {
             Self::Constant(colour) => *colour,
-            Self::Checker(checker) => checker.at(point),
-            Self::Image(image) => image.at(uv()),
+            Self::Checker(checker) => checker.at(place.point()),
+            Self::Image(image) => image.at(place.uv()),
         }
     }
 
@@ -116,8 +137,9 @@ mod tests {
     fn neighbours_differ_across_every_axis_that_counts() {
         let axes = Axes { x: true, y: false, z: true };
         let checker = Checker { even: Rgb::ONE, odd: Rgb::ZERO, size: 0.5, origin: DVec3::ZERO, axes };
-        let at =
-            |x: f64, y: f64, z: f64| Texture::Checker(checker).at(DVec3::new(x, y, z), || unreachable!());
+        let at = |x: f64, y: f64, z: f64| {
+            Texture::Checker(checker).at(&mut (DVec3::new(x, y, z), || -> DVec2 { unreachable!() }))
+        };
         assert_eq!(at(0.1, 0.0, 0.1), Rgb::ONE);
         assert_eq!(at(-0.1, 0.0, 0.1), Rgb::ZERO);
         assert_eq!(at(0.1, 0.0, 0.6), Rgb::ZERO);

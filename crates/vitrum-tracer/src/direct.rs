@@ -1,5 +1,6 @@
 //! Light that arrives at a surface straight from a light.
 
+use crate::feature::Feature;
 use crate::light::{Arrival, Light};
 use crate::scene::Scene;
 use crate::settings::ShadowMode;
@@ -83,6 +84,7 @@ fn visibility(
             if blocked { Rgb::ZERO } else { Rgb::ONE }
         }
         ShadowMode::Straight => {
+            stats.uses.count(Feature::StraightShadows);
             let mut transmittance = Rgb::ONE;
             while let Some(hit) = scene.aggregate().closest(&query, &mut stats.geometry)
                 && hit.t < arrival.distance

@@ -331,7 +331,7 @@ fn brightness(material: &Material) -> f64 {
 pub(crate) fn emitted(scene: &Scene, object: u32, face: u32, point: DVec3) -> Rgb {
     match scene.material(object, face) {
         Material::Emissive { radiance } => {
-            radiance.at(point, || scene.aggregate().uv_at(object, face, point))
+            radiance.at(&mut (point, || scene.aggregate().uv_at(object, face, point)))
         }
         _ => Rgb::ZERO,
     }

@@ -9,6 +9,7 @@
 //! a depth, unless one is set.
 
 use crate::environment_sampler::Asked;
+use crate::feature::{Feature, Uses};
 use crate::light_sampler::{Chosen, Source, emitted};
 use crate::ray_tree::{Children, Node};
 use crate::settings::{Branching, LightSampling};
@@ -111,7 +112,7 @@ impl Walker<'_, Path> {
             light +=
                 scattering.emitted * self.share_met(node, |from| self.lights.pdf(self.scene, from, surface));
         }
-        if self.plan.lights > 0 && scattering.answers_lights() {
+        if self.plan.needs(Feature::Lights) && scattering.answers_lights() {
             light += self.ask_a_light(node, surface, scattering, address);
         }
         light
@@ -139,6 +140,7 @@ impl Walker<'_, Path> {
         scattering: &Scattering,
         address: &SampleAddress,
     ) -> Rgb {
+        self.stats.uses.count(Feature::Lights);
         // What chooses the light finds the point of it, too: so the points of each light are spread evenly.
         let [u, v] = address.pair(node.memory.key, Purpose::Light);
         let Some(Chosen { source, probability, left: u }) = self.lights.choose(self.scene, surface.point, u)
@@ -206,20 +208,22 @@ impl Walker<'_, Path> {
         }
         self.stats.shadow_rays += 1;
         let mut query = surface.leave(towards, side);
-        let mut share = if self.plan.absorption {
+        let mut share = if self.plan.needs(Feature::Absorption) {
+            self.stats.uses.count(Feature::Absorption);
             self.scene.absorption_of(self.medium(node, surface, side)).transmittance(distance)
         } else {
             Rgb::ONE
         };
-        if !self.plan.thin_sheets {
+        if !self.plan.needs(Feature::ThinSheets) {
             let blocked = self.scene.aggregate().occluded(&query, distance, &mut self.stats.geometry);
             return if blocked { Rgb::ZERO } else { share };
         }
+        self.stats.uses.count(Feature::ThinSheets);
         while let Some(hit) = self.scene.aggregate().closest(&query, &mut self.stats.geometry)
             && hit.t < distance
         {
-            let sheet = self.scene.aggregate().interaction(&query, &hit);
-            let scattering = self.scene.scattering(&hit, sheet.point);
+            let sheet = self.scene.aggregate().interaction(&query, &hit, &mut self.stats.geometry);
+            let scattering = self.scene.scattering(&hit, sheet.point, &mut self.stats.uses);
             let through = match scattering.specular() {
                 Some(thin @ Bxdf::ThinDielectric(_)) => self.split(&sheet, thin).0.transmitted,
                 _ => None,
@@ -245,7 +249,10 @@ impl Walker<'_, Path> {
         let scatters = scattering.answers_lights();
         let choice = || address.first(node.memory.key, Purpose::Choice);
         let Some(body) = scattering.specular() else {
-            if scatters && let Some(way) = anywhere(node, surface, scattering, address, choice()) {
+            if scatters
+                && let Some(way) =
+                    anywhere(node, surface, scattering, address, choice(), &mut self.stats.uses)
+            {
                 self.go_on(node, surface, &way, 1.0, address, children);
             }
             return;
@@ -286,7 +293,7 @@ impl Walker<'_, Path> {
                 ((at - reflected - transmitted) / diffuse).clamp(0.0, 1.0 - f64::EPSILON)
             };
             let probability = if all { 1.0 } else { diffuse / total };
-            if let Some(way) = anywhere(node, surface, scattering, address, u) {
+            if let Some(way) = anywhere(node, surface, scattering, address, u, &mut self.stats.uses) {
                 self.go_on(node, surface, &way, probability, address, children);
             }
         }
@@ -372,7 +379,11 @@ fn anywhere(
     scattering: &Scattering,
     address: &SampleAddress,
     uc: f64,
+    uses: &mut Uses,
 ) -> Option<Way> {
+    if scattering.rough().is_some() {
+        uses.count(Feature::Roughness);
+    }
     let frame = Frame::around(shading_normal(surface));
     let u = address.pair(node.memory.key, Purpose::Direction);
     let child = scattering.sample(frame.to_local(surface.wo), uc, u, TransportMode::Radiance)?;

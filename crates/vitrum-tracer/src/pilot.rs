@@ -87,9 +87,8 @@ pub(crate) fn branching(
 ) -> (Vec<Branching>, u64) {
     let (columns, rows) = film.squares();
     let all = |way: Branching| (vec![way; columns as usize * rows as usize], 0);
-    let divides = plan.dielectrics || plan.mirrors || plan.thin_sheets;
     match settings.branches() {
-        Branching::Auto if settings.integrator == Integrator::Whitted || !divides => {
+        Branching::Auto if settings.integrator == Integrator::Whitted || !plan.divides => {
             return all(Branching::Tree);
         }
         Branching::Auto => {}

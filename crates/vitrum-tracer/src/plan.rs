@@ -3,9 +3,10 @@
 //! Decided once, before the first ray. The ray tree asks it for lights and ambient light; the rest is decided where it is
 //! built (trees, isolated solids, lens, normals) and told here.
 
+use crate::feature::Feature;
 use crate::light_sampler::LightSampler;
 use crate::scene::Scene;
-use crate::settings::{Integrator, Settings, ShadowMode};
+use crate::settings::{Integrator, NoSkip, Settings, ShadowMode};
 use vitrum_geometry::Shape;
 use vitrum_materials::{Absorption, Material, Texture};
 use vitrum_math::Rgb;
@@ -28,6 +29,8 @@ pub struct Plan {
     pub dielectrics: bool,
     /// Mirrors.
     pub mirrors: bool,
+    /// Something divides light or mirrors it: a path may follow several rays from one hit.
+    pub divides: bool,
     /// Media that absorb: a factor for each segment of a ray.
     pub absorption: bool,
     /// Sheets of glass, which light that is asked for goes through.
@@ -61,6 +64,34 @@ impl Plan {
         Self::with_lights(scene, settings, &LightSampler::of(scene, settings))
     }
 
+    /// Whether rendering uses a feature: what the hot loop asks.
+    // Always, because the feature is a constant wherever it is asked.
+    #[inline(always)]
+    pub fn needs(&self, feature: Feature) -> bool {
+        feature.is_built() && self.wants(feature)
+    }
+
+    #[inline(always)]
+    fn wants(&self, feature: Feature) -> bool {
+        match feature {
+            Feature::Lights => self.lights > 0,
+            Feature::ShadowRays => self.shadow_lights > 0,
+            Feature::AmbientLight => self.ambient,
+            Feature::Refraction => self.dielectrics,
+            Feature::Absorption => self.absorption,
+            Feature::ThinSheets => self.thin_sheets,
+            Feature::Roughness => self.rough,
+            Feature::Mirrors => self.mirrors,
+            Feature::Textures => self.textures,
+            Feature::Images => self.images,
+            Feature::Meshes => self.meshes > 0,
+            Feature::SmoothNormals => self.smooth_normals,
+            Feature::ObjectTree => self.object_tree,
+            Feature::Lens => self.lens,
+            Feature::StraightShadows => self.straight_shadows,
+        }
+    }
+
     pub(crate) fn with_lights(scene: &Scene, settings: &Settings, sampler: &LightSampler) -> Self {
         let materials = scene.materials();
         let objects = scene.aggregate().objects();
@@ -87,19 +118,21 @@ impl Plan {
         let absorbs = |a: Absorption| !a.is_none();
         let absorption = absorbs(scene.absorption)
             || materials.iter().filter_map(Material::media).any(|m| absorbs(m.inside) || absorbs(m.outside));
-        Self {
+        let mirrors =
+            materials.iter().any(|m| matches!(m, Material::Reflective { .. } | Material::Conductor(_)));
+        let thin = materials.iter().any(|m| matches!(m, Material::Thin(_)));
+        let needed = Self {
             lights,
             area_lights,
             environment_lights,
             absorption,
-            thin_sheets: is_path && materials.iter().any(|m| matches!(m, Material::Thin(_))),
+            thin_sheets: is_path && thin,
             rough,
             shadow_lights,
             ambient,
             dielectrics,
-            mirrors: materials
-                .iter()
-                .any(|m| matches!(m, Material::Reflective { .. } | Material::Conductor(_))),
+            divides: dielectrics || mirrors || thin,
+            mirrors,
             textures,
             images: materials.iter().any(|m| m.image().is_some()),
             smooth_normals: meshes.clone().any(|m| m.is_smooth()),
@@ -112,6 +145,17 @@ impl Plan {
                 && dielectrics,
             invisible: scene.invisible().len(),
             radiance_bound: (lights == 0 && !ambient && !is_path).then(|| radiance_bound(scene)).flatten(),
+        };
+        let left_out = Feature::ALL.into_iter().find(|feature| needed.wants(*feature) && !feature.is_built());
+        assert!(left_out.is_none(), "this build was made without what the scene needs: {left_out:?}");
+        // What is made to run: it changes nothing.
+        let NoSkip { lights, ambient, absorption, thin_sheets, object_tree: _, solids: _ } = settings.no_skip;
+        Self {
+            lights: needed.lights.max(usize::from(lights)),
+            ambient: needed.ambient || ambient && !is_path,
+            absorption: needed.absorption || absorption,
+            thin_sheets: needed.thin_sheets || thin_sheets && is_path,
+            ..needed
         }
     }
 }

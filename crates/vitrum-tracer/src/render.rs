@@ -8,7 +8,7 @@ use crate::pilot;
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::schedule::Schedule;
-use crate::settings::{Branching, Crop, Integrator, Settings, Target};
+use crate::settings::{Branching, Crop, Integrator, NoSkip, Settings, Target};
 use crate::stats::{Dropped, Stats};
 use crate::threads::{on_each, on_threads};
 use crate::walker::{Policy, Walker};
@@ -106,6 +106,8 @@ pub enum RenderError {
 pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Result<Rendering, RenderError> {
     check(settings)?;
     let film = Film::new(settings.area(), buffers(settings));
+    let more = in_full(scene, settings);
+    let scene = more.as_ref().unwrap_or(scene);
     on_threads(settings.threads, || render_here(scene, settings, film, progress))
 }
 
@@ -124,7 +126,15 @@ pub fn resume(
     if film.area() != settings.area() || film.buffers().len() != buffers(settings) {
         return Err(RenderError::OtherFilm);
     }
+    let more = in_full(scene, settings);
+    let scene = more.as_ref().unwrap_or(scene);
     on_threads(settings.threads, || render_here(scene, settings, film, progress))
+}
+
+/// The scene with more to search, where that was asked for.
+fn in_full(scene: &Scene, settings: &Settings) -> Option<Scene> {
+    let NoSkip { object_tree, solids, .. } = settings.no_skip;
+    (object_tree || solids).then(|| scene.searched_in_full(object_tree, solids))
 }
 
 fn buffers(settings: &Settings) -> usize {
@@ -132,6 +142,8 @@ fn buffers(settings: &Settings) -> usize {
 }
 
 /// Renders on the threads of the pool that it is called in, or on the calling one.
+// Never inlined: benches/gate.py counts the instructions of this function.
+#[inline(never)]
 fn render_here(scene: &Scene, settings: &Settings, mut film: Film, progress: &dyn Progress) -> Rendering {
     let lights = LightSampler::of(scene, settings);
     let plan = Plan::with_lights(scene, settings, &lights);

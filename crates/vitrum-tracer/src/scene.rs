@@ -2,10 +2,11 @@
 
 use crate::background::Background;
 use crate::camera::Camera;
+use crate::feature::{Feature, Uses};
 use crate::light::Light;
 use vitrum_geometry::{Aggregate, Counters, Hit, Object, Query, Shape};
-use vitrum_materials::{Absorption, IndexOfRefraction, Material, Scattering};
-use vitrum_math::{DVec3, Ray, Rgb, unit};
+use vitrum_materials::{Absorption, IndexOfRefraction, Material, Place, Scattering};
+use vitrum_math::{DVec2, DVec3, Ray, Rgb, unit};
 
 /// An object with its name and material, as it enters a [`Scene`].
 #[derive(Clone, Debug)]
@@ -41,6 +42,29 @@ pub enum SceneError {
     /// More objects than 32-bit ids count.
     #[error("{0} objects are too many")]
     TooMany(usize),
+}
+
+/// Where a ray hits; counts what textures ask of it.
+struct HitPlace<'a> {
+    aggregate: &'a Aggregate,
+    hit: &'a Hit,
+    point: DVec3,
+    uses: &'a mut Uses,
+}
+
+impl Place for HitPlace<'_> {
+    #[inline(always)]
+    fn point(&mut self) -> DVec3 {
+        self.uses.count(Feature::Textures);
+        self.point
+    }
+
+    #[inline(always)]
+    fn uv(&mut self) -> DVec2 {
+        self.uses.count(Feature::Textures);
+        self.uses.count(Feature::Images);
+        if Feature::Images.is_built() { self.aggregate.uv(self.hit, self.point) } else { DVec2::ZERO }
+    }
 }
 
 /// Everything that light meets, and the camera that looks at it.
@@ -120,6 +144,11 @@ impl Scene {
         &self.aggregate
     }
 
+    /// The same scene with more to search: see [`Aggregate::searched_in_full`].
+    pub(crate) fn searched_in_full(&self, in_tree: bool, in_solids: bool) -> Self {
+        Self { aggregate: self.aggregate.searched_in_full(in_tree, in_solids), ..self.clone() }
+    }
+
     /// Names of the objects, by id.
     pub fn names(&self) -> &[String] {
         &self.names
@@ -152,8 +181,9 @@ impl Scene {
     /// What the surface does to light at a hit, whose point is given.
     // Always, because what it returns is large and would be copied.
     #[inline(always)]
-    pub fn scattering(&self, hit: &Hit, point: DVec3) -> Scattering {
-        self.material(hit.object, hit.face).scattering(point, || self.aggregate.uv(hit, point))
+    pub fn scattering(&self, hit: &Hit, point: DVec3, uses: &mut Uses) -> Scattering {
+        let mut place = HitPlace { aggregate: &self.aggregate, hit, point, uses };
+        self.material(hit.object, hit.face).scattering(&mut place)
     }
 
     /// The medium behind a face of an object, on the side that its normal points to or on the other one; `None` where the
@@ -197,9 +227,10 @@ impl Scene {
         ];
         let left = |direction: &DVec3| {
             let query = Query::new(Ray::new(point, unit(*direction)));
-            let hit = self.aggregate.closest(&query, &mut Counters::default())?;
+            let mut counters = Counters::default();
+            let hit = self.aggregate.closest(&query, &mut counters)?;
             let material = self.material(hit.object, hit.face);
-            let behind = !self.aggregate.interaction(&query, &hit).front;
+            let behind = !self.aggregate.interaction(&query, &hit, &mut counters).front;
             (behind && material.is_dielectric() && !material.is_rough()).then_some(hit.object)
         };
         let objects: Option<Vec<u32>> = DIRECTIONS.iter().map(left).collect();

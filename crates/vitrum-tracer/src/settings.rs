@@ -61,6 +61,35 @@ pub enum Target {
     Noise(f64),
 }
 
+/// What can run without being needed, and is made to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct NoSkip {
+    /// Lights are asked for where there are none.
+    pub lights: bool,
+    /// Ambient light is added where it is black.
+    pub ambient: bool,
+    /// Clear media absorb nothing, segment by segment.
+    pub absorption: bool,
+    /// Shadow rays look for sheets that light goes through.
+    pub thin_sheets: bool,
+    /// Objects stand in a tree, however few they are.
+    pub object_tree: bool,
+    /// Rays inside solids search everything.
+    pub solids: bool,
+}
+
+impl NoSkip {
+    /// All of it.
+    pub const ALL: Self = Self {
+        lights: true,
+        ambient: true,
+        absorption: true,
+        thin_sheets: true,
+        object_tree: true,
+        solids: true,
+    };
+}
+
 /// A part of the image, in pixels from its upper left corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Crop {
@@ -107,6 +136,8 @@ pub struct Settings {
     pub seed: u64,
     /// What glass does to shadow rays of ray trees.
     pub shadow: ShadowMode,
+    /// What runs although the scene does not need it: shows what skipping it is worth. No effect on the image.
+    pub no_skip: NoSkip,
     /// Threads; zero for as many as the machine has. No effect on the image.
     pub threads: usize,
     /// Edge of the squares that threads work on, pixels. No effect on the image.
@@ -130,6 +161,7 @@ impl Default for Settings {
             cutoff: 1e-3,
             seed: 0,
             shadow: ShadowMode::Opaque,
+            no_skip: NoSkip::default(),
             threads: 0,
             tile: 16,
         }

@@ -1,5 +1,6 @@
 //! What a render did, counted.
 
+use crate::feature::{Feature, Uses};
 use vitrum_geometry::Counters;
 
 /// Counts of one render. Sums and maxima only, so that they don't depend on the order of the work.
@@ -26,6 +27,8 @@ pub struct Stats {
     pub normal_fallbacks: u64,
     /// Rare events of the ray queries.
     pub geometry: Counters,
+    /// Of features, in builds that count them: see [`Stats::uses_of`].
+    pub(crate) uses: Uses,
     /// Samples that were not finite, or negative, and were left out.
     pub dropped: u64,
     /// The first of them in the order of pixels and samples.
@@ -63,6 +66,17 @@ impl Stats {
         self.camera_rays + self.reflected_rays + self.transmitted_rays
     }
 
+    /// How often a feature was used. In builds that do not count uses ([`Uses::ARE_COUNTED`]) only shadow rays are known.
+    pub fn uses_of(&self, feature: Feature) -> u64 {
+        match feature {
+            Feature::ShadowRays => self.shadow_rays,
+            Feature::Meshes => self.geometry.mesh_searches,
+            Feature::ObjectTree => self.geometry.tree_searches,
+            Feature::SmoothNormals => self.geometry.interpolated_normals,
+            _ => self.uses.of(feature),
+        }
+    }
+
     /// Adds what another part of the image counted.
     pub(crate) fn merge(&mut self, other: &Self) {
         self.samples += other.samples;
@@ -74,7 +88,8 @@ impl Stats {
         self.deepest = self.deepest.max(other.deepest);
         self.guarded += other.guarded;
         self.normal_fallbacks += other.normal_fallbacks;
-        self.geometry.neighbours_ignored += other.geometry.neighbours_ignored;
+        self.geometry.merge(&other.geometry);
+        self.uses.merge(&other.uses);
         self.dropped += other.dropped;
         self.first_dropped = match (self.first_dropped, other.first_dropped) {
             (Some(a), Some(b)) => Some(a.min(b)),

@@ -4,6 +4,7 @@
 //! first. Two ways of following light share all that, and differ in what they do at a hit: see the [`Policy`] of
 //! [`Whitted`](crate::whitted::Whitted) and of [`Path`](crate::path::Path).
 
+use crate::feature::Feature;
 use crate::filter::FilterSampler;
 use crate::light_sampler::LightSampler;
 use crate::plan::Plan;
@@ -80,7 +81,10 @@ impl<'s, P: Policy> Walker<'s, P> {
         address: &SampleAddress,
     ) -> Option<[f32; 3]> {
         let [dx, dy] = filter.sample(address.pair(NodeKey::ROOT, Purpose::Film));
-        let lens = || address.pair(NodeKey::ROOT, Purpose::Lens);
+        let lens = || {
+            self.stats.uses.count(Feature::Lens);
+            address.pair(NodeKey::ROOT, Purpose::Lens)
+        };
         let ray = self.scene.camera.ray(f64::from(x) + dx, f64::from(y) + dy, self.settings.size, lens);
         let radiance = self.radiance(ray, address).to_array();
         // No channel above the largest value that counts; what is not finite stays so.
@@ -101,21 +105,23 @@ impl<'s, P: Policy> Walker<'s, P> {
 
             // The ray escapes, or finds a surface; the medium takes its share of what it brings.
             let Some(hit) = self.scene.aggregate().closest(&node.query, &mut self.stats.geometry) else {
-                if self.plan.absorption {
+                if self.plan.needs(Feature::Absorption) {
+                    self.stats.uses.count(Feature::Absorption);
                     node.throughput *= self.scene.absorption_of(node.medium).transmittance(f64::INFINITY);
                 }
                 radiance += node.throughput * P::escape(self, node);
                 continue;
             };
-            let surface = self.scene.aggregate().interaction(&node.query, &hit);
-            if self.plan.absorption {
+            let surface = self.scene.aggregate().interaction(&node.query, &hit, &mut self.stats.geometry);
+            if self.plan.needs(Feature::Absorption) {
+                self.stats.uses.count(Feature::Absorption);
                 if node.depth == 0 {
                     // Where the camera stands, the first surface knows.
                     node.medium = self.medium(node, &surface, Side::Incident);
                 }
                 node.throughput *= self.scene.absorption_of(node.medium).transmittance(hit.t);
             }
-            let scattering = self.scene.scattering(&hit, surface.point);
+            let scattering = self.scene.scattering(&hit, surface.point, &mut self.stats.uses);
 
             // The surface sends out light of its own, and returns what the lights send to it; light from other surfaces
             // arrives along the children.
@@ -130,6 +136,11 @@ impl<'s, P: Policy> Walker<'s, P> {
     // Always, because what it returns is large and would be copied.
     #[inline(always)]
     pub(crate) fn split(&mut self, surface: &SurfaceInteraction, body: &Bxdf<f64>) -> (Split<f64>, Frame) {
+        match body {
+            Bxdf::PerfectSpecular(_) | Bxdf::Conductor(_) => self.stats.uses.count(Feature::Mirrors),
+            Bxdf::ThinDielectric(_) => {}
+            _ => self.stats.uses.count(Feature::Refraction),
+        }
         let normal = shading_normal(surface);
         let frame = Frame::around(normal);
         let split = body.split(frame.to_local(surface.wo), TransportMode::Radiance);
@@ -146,7 +157,7 @@ impl<'s, P: Policy> Walker<'s, P> {
     /// What a ray goes through that leaves the surface to a side: what the surface says, or what the ray came through.
     #[inline]
     pub(crate) fn medium(&self, node: &Node<P::Memory>, surface: &SurfaceInteraction, side: Side) -> Medium {
-        if !self.plan.absorption {
+        if !self.plan.needs(Feature::Absorption) {
             return node.medium;
         }
         let inside = surface.front == (side == Side::Transmitted);

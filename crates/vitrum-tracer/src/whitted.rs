@@ -3,6 +3,7 @@
 //! zero, at the depth limit, and where weights fall below the cut-off. What ends early is counted.
 
 use crate::direct::direct;
+use crate::feature::Feature;
 use crate::ray_tree::{Children, Node};
 use crate::walker::{Policy, Walker, shading_normal, side};
 use vitrum_bxdf::Sample;
@@ -49,12 +50,15 @@ impl Walker<'_, Whitted> {
         if surface.front {
             local += scattering.emitted;
         }
-        if self.plan.ambient {
+        if self.plan.needs(Feature::AmbientLight) {
+            self.stats.uses.count(Feature::AmbientLight);
             local += scattering.ambient * self.scene.ambient;
         }
-        if self.plan.lights > 0 && scattering.answers_lights() {
+        if self.plan.needs(Feature::Lights) && scattering.answers_lights() {
+            self.stats.uses.count(Feature::Lights);
             let normal = shading_normal(surface);
-            let medium = self.plan.absorption.then(|| self.medium(node, surface, Side::Incident));
+            let medium =
+                self.plan.needs(Feature::Absorption).then(|| self.medium(node, surface, Side::Incident));
             let medium = medium.map(|medium| *self.scene.absorption_of(medium));
             let (scene, shadow) = (self.scene, self.settings.shadow);
             local += direct(scene, shadow, medium, surface, normal, scattering, &mut self.stats);

@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod bad_output;
+mod measuring;
 mod models;
 mod rounds;
 #[cfg(unix)]

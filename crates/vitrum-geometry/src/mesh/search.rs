@@ -125,6 +125,7 @@ impl Task for ClosestHit<'_> {
     #[inline(always)]
     fn run<P: Processor>(&mut self) {
         let (mesh, limit) = (self.mesh, self.nearest.limit());
+        Counters::count(&mut self.counters.mesh_searches);
         let Some(framed) = mesh.frame.enter::<P>(self.ray, self.is_unit, limit) else { return };
         let known = Known::new(&framed, self.query, self.object);
         let (pending, doubtful) = (Pending::NONE, Doubtful::NONE);
@@ -248,6 +249,7 @@ impl Task for AnyHit<'_> {
     #[inline(always)]
     fn run<P: Processor>(&mut self) -> bool {
         let mesh = self.mesh;
+        Counters::count(&mut self.counters.mesh_searches);
         let Some(framed) = mesh.frame.enter::<P>(self.ray, self.is_unit, self.limit) else { return false };
         let limit = framed.scale.box_limit(self.limit);
         let known = Known::new(&framed, self.query, self.object);

@@ -225,7 +225,7 @@ fn inside_solids_nothing_is_missed() {
             }
             assert_eq!(hit, expected.found(), "ray {i}");
             let Some(hit) = hit else { break };
-            let surface = aggregate.interaction(&query, &hit);
+            let surface = aggregate.interaction(&query, &hit, &mut Counters::default());
             let wi = target(surface.point, &mut random);
             inside += u32::from(wi.dot(surface.ng) < 0.0);
             query = surface.leave(wi, surface.side_of(wi));
@@ -264,14 +264,14 @@ fn closed_meshes_do_not_leak() {
                 let hit = aggregate
                     .closest(&from_inside, &mut counters)
                     .expect("a ray from inside gets out unseen");
-                let surface = aggregate.interaction(&from_inside, &hit);
+                let surface = aggregate.interaction(&from_inside, &hit, &mut Counters::default());
                 assert!(!surface.front, "from inside the back is seen");
                 // On from there, straight through: outside nothing may come that contradicts being outside.
                 let mut query = surface.leave(direction, Side::Transmitted);
                 let mut inside_now = false;
                 for _ in 0..20 {
                     let Some(hit) = aggregate.closest(&query, &mut counters) else { break };
-                    let surface = aggregate.interaction(&query, &hit);
+                    let surface = aggregate.interaction(&query, &hit, &mut Counters::default());
                     assert_eq!(surface.front, !inside_now, "entering and leaving alternate");
                     inside_now = !inside_now;
                     query = surface.leave(direction, Side::Transmitted);
@@ -300,7 +300,7 @@ fn departing_rays_see_no_surface_at_their_start() {
             let query = Query::new(Ray::new(start, (target - start).normalize()));
             let mut counters = Counters::default();
             let Some(hit) = aggregate.closest(&query, &mut counters) else { continue };
-            let surface = aggregate.interaction(&query, &hit);
+            let surface = aggregate.interaction(&query, &hit, &mut Counters::default());
             // A ray that only touches the outline, at a vertex, enters and leaves in one point: whether a face is left to be
             // met is then a matter of the last bit, and either answer is right.
             if surface.wo.dot(unit(surface.point - centre)) < 0.15 {
@@ -312,7 +312,7 @@ fn departing_rays_see_no_surface_at_their_start() {
             assert_eq!(aggregate.closest(&reflected, &mut counters), None, "scale {scale}, offset {offset}");
             let inward = surface.leave(query.ray.direction, Side::Transmitted);
             let next = aggregate.closest(&inward, &mut counters).expect("leaves again");
-            assert!(!aggregate.interaction(&inward, &next).front);
+            assert!(!aggregate.interaction(&inward, &next, &mut Counters::default()).front);
         }
     }
 }

@@ -14,7 +14,7 @@ mod read;
 mod tone;
 
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 pub use error::{ImageError, WriteError};
 pub use read::{Texels, read_texture};
@@ -101,6 +101,16 @@ pub fn write(
         }
     };
     Ok(atomic::replace(path, |file| file.write_all(&bytes))?)
+}
+
+/// The bytes of a PNG file of an image.
+///
+/// # Errors
+/// When the image has no pixels or not the number that its size says.
+pub fn png_bytes(image: ImageView<'_>, display: Display) -> Result<Vec<u8>, ImageError> {
+    check_image(image)?;
+    png::encode(image, &[], display)
+        .map_err(|error| ImageError::Encode { path: PathBuf::new(), message: error.to_string() })
 }
 
 /// Whether a file of this name holds channels beside radiance.

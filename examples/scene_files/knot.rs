@@ -16,35 +16,47 @@ pub(crate) const NAME: &str = "torus_knot";
 /// What the head of the file says.
 pub(crate) const ABOUT: &str =
     "(2, 3) torus knot: tube of radius 0.14 m, closed, 256 x 24 quads, smooth normals.";
+/// The same with 100 000 triangles.
+pub(crate) const FINE: &str = "fine_knot";
+/// What the head of its file says.
+pub(crate) const ABOUT_FINE: &str = "(2, 3) torus knot: tube of radius 0.14 m, closed, 1000 x 50 quads.";
 
 const MAJOR: f64 = 0.6;
 const MINOR: f64 = 0.26;
 const TUBE: f64 = 0.14;
-const ALONG: usize = 256;
-const AROUND: usize = 24;
-
-/// The tube.
+/// The tube of the gallery.
 pub(crate) fn mesh() -> MeshData {
+    tube(256, 24)
+}
+
+/// The tube with 100 000 triangles: places only, to keep its file small.
+pub(crate) fn fine_mesh() -> MeshData {
+    let MeshData { positions, triangles, .. } = tube(1000, 50);
+    MeshData { positions, triangles, ..MeshData::default() }
+}
+
+/// So many quads along the tube and around it.
+fn tube(along: usize, around: usize) -> MeshData {
     let mut mesh = MeshData::default();
-    for i in 0..ALONG {
-        let (centre, normal, binormal) = frame(i);
-        for j in 0..AROUND {
-            let around = circle::point(j, AROUND);
+    for i in 0..along {
+        let (centre, normal, binormal) = frame(i, along);
+        for j in 0..around {
+            let around = circle::point(j, around);
             let outward = around.x * normal + around.y * binormal;
             mesh.positions.push(centre + TUBE * outward);
             mesh.normals.push(outward);
         }
     }
     // Texture coordinates end at 1, so they have a row and a column more than there are vertices.
-    for i in 0..=ALONG {
-        for j in 0..=AROUND {
-            mesh.uvs.push(DVec2::new(i as f64 / ALONG as f64, j as f64 / AROUND as f64));
+    for i in 0..=along {
+        for j in 0..=around {
+            mesh.uvs.push(DVec2::new(i as f64 / along as f64, j as f64 / around as f64));
         }
     }
-    let index = |i: usize, j: usize| ((i % ALONG) * AROUND + j % AROUND) as u32;
-    let uv_index = |i: usize, j: usize| (i * (AROUND + 1) + j) as u32;
-    for i in 0..ALONG {
-        for j in 0..AROUND {
+    let index = |i: usize, j: usize| ((i % along) * around + j % around) as u32;
+    let uv_index = |i: usize, j: usize| (i * (around + 1) + j) as u32;
+    for i in 0..along {
+        for j in 0..around {
             // The frame twists around the tube: this diagonal turns back against the twist. It is the
             // shorter, and a ridge; the other would be a valley.
             for [a, b, c] in [[(0, 0), (1, 0), (0, 1)], [(1, 0), (1, 1), (0, 1)]] {
@@ -57,13 +69,13 @@ pub(crate) fn mesh() -> MeshData {
     mesh
 }
 
-/// Point of the curve, normal of the torus there, and the direction that completes them with the tangent.
-fn frame(step: usize) -> (DVec3, DVec3, DVec3) {
+/// Point of the curve, normal of the torus there, and the direction that completes them with the tangent, `step` of so many `along`.
+fn frame(step: usize, along: usize) -> (DVec3, DVec3, DVec3) {
     // Twice around the axis, from straight up; three times around the tube of the torus.
-    let axial = circle::point(2 * step, ALONG);
+    let axial = circle::point(2 * step, along);
     let radial = DVec3::new(-axial.y, axial.x, 0.0);
     let forward = DVec3::new(-axial.x, -axial.y, 0.0);
-    let tube = circle::point(3 * step, ALONG);
+    let tube = circle::point(3 * step, along);
     let normal = tube.x * radial + tube.y * DVec3::Z;
     let across = tube.x * DVec3::Z - tube.y * radial;
     let tangent = 2.0 * (MAJOR + MINOR * tube.x) * forward + 3.0 * MINOR * across;

@@ -1,20 +1,27 @@
-//! The gallery's meshes are what they claim to be, and the files in the repository are what the program
+//! The meshes of the scenes are what they claim to be, and the files in the repository are what the program
 //! writes.
 
-#[path = "../../examples/gallery_meshes/brilliant.rs"]
+#[path = "../../examples/scene_files/balls.rs"]
+mod balls;
+#[path = "../../examples/scene_files/brilliant.rs"]
 mod brilliant;
-#[path = "../../examples/gallery_meshes/circle.rs"]
+#[path = "../../examples/scene_files/circle.rs"]
 mod circle;
-#[path = "../../examples/gallery_meshes/knot.rs"]
+#[path = "../../examples/scene_files/knot.rs"]
 mod knot;
-#[path = "../../examples/gallery_meshes/obj.rs"]
+#[path = "../../examples/scene_files/obj.rs"]
 mod obj;
-#[path = "../../examples/gallery_meshes/wine_glass.rs"]
+#[path = "../../examples/scene_files/sky.rs"]
+mod sky;
+#[path = "../../examples/scene_files/tumbler.rs"]
+mod tumbler;
+#[path = "../../examples/scene_files/wine_glass.rs"]
 mod wine_glass;
 
 use std::{collections::BTreeSet, f64::consts::PI, fs, path::Path};
 
 use glam::DVec3;
+use vitrum::io::image::{self, Display, ImageView};
 use vitrum_geometry::mesh::{MeshData, Triangle, health, mend};
 
 fn models() -> [(&'static str, &'static str, MeshData); 3] {
@@ -22,6 +29,17 @@ fn models() -> [(&'static str, &'static str, MeshData); 3] {
         (knot::NAME, knot::ABOUT, knot::mesh()),
         (wine_glass::NAME, wine_glass::ABOUT, wine_glass::mesh(wine_glass::SEGMENTS)),
         (brilliant::NAME, brilliant::ABOUT, brilliant::mesh(brilliant::GIRDLE_SIDES)),
+    ]
+}
+
+/// Those of the bench.
+fn bench_models() -> [(&'static str, &'static str, MeshData); 5] {
+    [
+        (knot::FINE, knot::ABOUT_FINE, knot::fine_mesh()),
+        (tumbler::OUTSIDE.0, tumbler::OUTSIDE.1, tumbler::outside()),
+        (tumbler::BELOW.0, tumbler::BELOW.1, tumbler::below()),
+        (tumbler::SURFACE.0, tumbler::SURFACE.1, tumbler::surface()),
+        (tumbler::ICE.0, tumbler::ICE.1, tumbler::ice()),
     ]
 }
 
@@ -46,12 +64,112 @@ fn euler_characteristic(mesh: &MeshData) -> i64 {
 
 #[test]
 fn files_are_what_the_program_writes() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/gallery/meshes");
-    for (name, about, mesh) in models() {
-        let file = fs::read(folder.join(name).with_extension("obj")).unwrap();
-        assert!(file.len() < 1_200_000, "{name}: {} bytes", file.len());
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let of_gallery = models().map(|model| ("gallery/meshes", model, 1_200_000));
+    let of_bench = bench_models().map(|model| ("bench/meshes", model, 4_000_000));
+    for (folder, (name, about, mesh), most) in of_gallery.into_iter().chain(of_bench) {
+        let file = fs::read(scenes.join(folder).join(name).with_extension("obj")).unwrap();
+        assert!(file.len() < most, "{name}: {} bytes", file.len());
         let same = obj::text(name, about, &mesh).into_bytes() == file;
-        assert!(same, "{name}.obj is not up to date: run `cargo run --example gallery_meshes`");
+        assert!(same, "{name}.obj is not up to date: run `cargo run --example scene_files`");
+    }
+    let scene = fs::read_to_string(scenes.join("bench/11_thousand_balls.toml")).unwrap();
+    assert!(
+        scene == balls::text(),
+        "the scene of balls is not up to date: run `cargo run --example scene_files`"
+    );
+    let place = tempfile::tempdir().unwrap();
+    let (path, pixels) = (place.path().join("sky.exr"), sky::pixels());
+    let view = ImageView { width: sky::WIDTH, height: sky::HEIGHT, pixels: &pixels };
+    image::write(&path, view, &[], &[], Display::default()).unwrap();
+    let same = fs::read(path).unwrap() == fs::read(scenes.join("bench/sky.exr")).unwrap();
+    assert!(same, "the sky is not up to date: run `cargo run --example scene_files`");
+}
+
+/// Glass, water and air touch along one circle, where each pair of surfaces has the same points.
+#[test]
+fn the_tumbler_is_closed_by_its_water() {
+    let parts = [tumbler::outside(), tumbler::below(), tumbler::surface()];
+    let at_water = |mesh: &MeshData| -> BTreeSet<[u64; 3]> {
+        let (_, high) = bounds(&tumbler::surface());
+        let level =
+            mesh.positions.iter().filter(|p| p.y == high.y && p.x.hypot(p.z) > 0.4 && p.x.hypot(p.z) < 0.5);
+        level.map(|p| p.to_array().map(f64::to_bits)).collect()
+    };
+    let circles = parts.each_ref().map(at_water);
+    assert_eq!(circles[0].len(), 96);
+    assert!(circles[0] == circles[1] && circles[1] == circles[2]);
+    // What the glass has around it: its outside with the inside of its cup, turned away from it.
+    let mut whole = parts[0].clone();
+    let base = whole.positions.len() as u32;
+    whole.positions.extend(&parts[1].positions);
+    whole.triangles.extend(parts[1].triangles.iter().map(|t| t.map(|corner| corner + base)));
+    // Wall, floor, half a ring on top, and what the rounded edges take off outside and fill inside (Pappus); a circle of 96 pieces
+    // has 0.9993 of its area, and arcs of 15 degrees a little less than theirs.
+    let disk = |radius: f64| PI * radius * radius;
+    let fillet = (1.0 - PI / 4.0) * 0.01 * 2.0 * PI;
+    let wall = (disk(0.55) - disk(0.47)) * 1.29 + disk(0.47) * 0.12 + 0.5 * disk(0.04) * 2.0 * PI * 0.51;
+    let expected = 0.9993 * (wall - fillet * (0.55 - 0.022) + fillet * (0.47 - 0.022));
+    let volume = signed_volume(&whole);
+    assert!((volume / expected - 1.0).abs() < 3e-3, "{volume}, expected {expected}");
+    let ice = health(&tumbler::ice());
+    assert!(ice.is_closed() && (ice.volume().unwrap() / 0.027 - 1.0).abs() < 1e-9, "{ice}");
+}
+
+fn signed_volume(mesh: &MeshData) -> f64 {
+    mesh.triangles.iter().map(|t| points(mesh, *t)).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
+}
+
+/// So many triangles, closed, and of the volume of the gallery's knot but for the finer rounding.
+#[test]
+fn the_fine_knot_is_the_knot() {
+    let [fine, coarse] = [knot::fine_mesh(), knot::mesh()].map(|mesh| (mesh.triangles.len(), health(&mesh)));
+    assert_eq!(fine.0, 100_000);
+    assert!(fine.1.is_closed() && fine.1.findings.is_empty(), "{}", fine.1);
+    let ratio = fine.1.volume().unwrap() / coarse.1.volume().unwrap();
+    // A 24-gon has 0.9886 of its circle, a 50-gon 0.9974.
+    assert!((ratio - 0.9974 / 0.9886).abs() < 2e-3, "{ratio}");
+}
+
+/// The spheres of a scene: centres and radii.
+fn spheres(text: &str) -> Vec<(DVec3, f64)> {
+    let numbers = |line: &str| -> Vec<f64> {
+        let (_, value) = line.split_once(" = ").expect("a key has a value");
+        value.trim_matches(['[', ']']).split(", ").map(|v| v.parse().expect("a number")).collect()
+    };
+    let objects = text.split("[[object]]").filter(|object| object.contains("shape = \"sphere\""));
+    let value = |object: &str, key: &str| {
+        numbers(object.lines().find(|l| l.starts_with(key)).expect("the key is there"))
+    };
+    objects.map(|o| (DVec3::from_slice(&value(o, "center")), value(o, "radius")[0])).collect()
+}
+
+/// No two spheres of a scene of the bench cross: they stand apart, or one lies in the other.
+#[test]
+fn no_glass_overlaps() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/bench");
+    let mut count = 0;
+    for path in vitrum_testkit::files_with_extension(&folder, "toml") {
+        let spheres = spheres(&fs::read_to_string(&path).unwrap());
+        count += spheres.len();
+        for (i, (a, r)) in spheres.iter().enumerate() {
+            for (b, s) in &spheres[..i] {
+                let distance = a.distance(*b);
+                assert!(distance > r + s || distance < (r - s).abs(), "{}: {a} and {b}", path.display());
+            }
+        }
+    }
+    assert!(count > 1000, "{count}");
+}
+
+/// None of the balls touches another, or the floor.
+#[test]
+fn the_balls_stand_apart() {
+    let balls = spheres(&balls::text());
+    assert_eq!(balls.len(), 1000);
+    for (i, (a, r)) in balls.iter().enumerate() {
+        assert!(a.y - r > 0.01, "{a}");
+        assert!(balls[..i].iter().all(|(b, s)| a.distance(*b) > r + s), "{a} touches another");
     }
 }
 
