@@ -2,7 +2,7 @@
 //! another look at the jackknife").
 //!
 //! The values are drawn again with replacement, as many as there are, many times over; the interval is where the middle of
-//! the means so found lies (the percentile method). With few values it is somewhat too narrow: for normal ones, five give 84 %
+//! the means so found lies (the percentile method). With few values it is somewhat too narrow: for normal ones, five give 85 %
 //! in the place of 95 %, ten 90 %.
 
 use vitrum_math::{NodeKey, Purpose, SampleAddress, Sequence};
@@ -71,5 +71,23 @@ mod tests {
         // Three standard errors of 400 trials at 94.5 % are 3.4 %.
         assert!((0.911..0.979).contains(&(f64::from(inside) / f64::from(times))), "{inside}");
         assert!((width / (2.0 * 1.96 / (12.0f64 * 40.0).sqrt()) - 1.0).abs() < 0.03, "{width}");
+    }
+
+    /// Of five normal values the middle 95 % hold the mean less often: as often as the manual says.
+    #[test]
+    fn few_values_give_a_narrow_interval() {
+        let mut uniform = Uniform::new(5);
+        // Twelve even numbers less six have a variance of one and are nearly normal.
+        let mut normal = || (0..12).map(|_| uniform.number()).sum::<f64>() - 6.0;
+        for (count, share) in [(5, 0.85), (10, 0.90)] {
+            let inside = (0..400).filter(|_| {
+                let values: Vec<f64> = (0..count).map(|_| normal()).collect();
+                let Interval { low, high, .. } = interval_of_mean(&values, 0.95).expect("there are values");
+                low <= 0.0 && 0.0 <= high
+            });
+            // Three standard errors of 400 trials are 5.4 % at 85 % and 4.5 % at 90 %.
+            let found = inside.count() as f64 / 400.0;
+            assert!((found - share).abs() < 0.05, "{count}: {found}");
+        }
     }
 }

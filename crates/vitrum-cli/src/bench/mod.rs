@@ -59,8 +59,7 @@ pub(crate) fn run(arguments: &Bench) -> Result<ExitCode, Failure> {
     let mut all: Vec<(Record, &Path)> =
         own.into_iter().map(|record| (record, arguments.output.as_path())).collect();
     for (records, path) in included.into_iter().zip(&arguments.include) {
-        let folder = path.parent().unwrap_or(Path::new(""));
-        all.extend(records.into_iter().map(|record| (record, folder)));
+        page::add(&mut all, records, path);
     }
     page::write(&all, &arguments.output.join("index.html"))?;
     Ok(ExitCode::SUCCESS)

@@ -18,14 +18,7 @@ use std::process::ExitCode;
 pub(crate) fn run(arguments: &Page) -> Result<ExitCode, Failure> {
     let mut all: Vec<(Record, &Path)> = Vec::new();
     for path in &arguments.results {
-        let folder = path.parent().unwrap_or(Path::new(""));
-        let known: BTreeSet<String> = all.iter().map(|(record, _)| record.program.clone()).collect();
-        let mut records = bench::read(path)?;
-        // A program that was measured in several files is several programs: say, before and after a change.
-        for record in records.iter_mut().filter(|record| known.contains(&record.program)) {
-            record.program = format!("{} ({})", record.program, path.display());
-        }
-        all.extend(records.into_iter().map(|record| (record, folder)));
+        add(&mut all, bench::read(path)?, path);
     }
     if arguments.markdown {
         let records: Vec<Record> = all.into_iter().map(|(record, _)| record).collect();
@@ -34,6 +27,16 @@ pub(crate) fn run(arguments: &Page) -> Result<ExitCode, Failure> {
         write(&all, &arguments.output)?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Adds what a file holds. A program that was measured in several files is several programs: say, before and after a change.
+pub(crate) fn add<'a>(all: &mut Vec<(Record, &'a Path)>, mut records: Vec<Record>, file: &'a Path) {
+    let known: BTreeSet<String> = all.iter().map(|(record, _)| record.program.clone()).collect();
+    for record in records.iter_mut().filter(|record| known.contains(&record.program)) {
+        record.program = format!("{} ({})", record.program, file.display());
+    }
+    let folder = file.parent().unwrap_or(Path::new(""));
+    all.extend(records.into_iter().map(|record| (record, folder)));
 }
 
 /// Headings of the columns after scene and program.

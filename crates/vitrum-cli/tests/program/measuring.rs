@@ -118,6 +118,22 @@ fn a_bench_measures_scenes_with_references() {
     assert!(page.contains("<svg") && !page.contains("src=\"http") && !page.contains("<script"));
     // Measured results are not written over.
     place.refuse(&arguments, 2, &["choose a new folder"]);
+    // The same program from another file is another curve.
+    let more = [
+        "bench",
+        "scene.toml",
+        "-o",
+        "more",
+        "--spp",
+        "1",
+        "--seeds",
+        "1",
+        "--include",
+        "results/results.jsonl",
+    ];
+    place.succeed(&more);
+    let both = String::from_utf8(place.read("more/index.html")).expect("it is text");
+    assert!(both.contains("<td>vitrum<td>") && both.contains("<td>vitrum (results/results.jsonl)<td>"));
     // The page can be made again elsewhere, of several results.
     place.succeed(&["page", "results/results.jsonl", "-o", "again.html"]);
     assert_eq!(String::from_utf8(place.read("again.html")).expect("it is text"), page);
