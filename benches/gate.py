@@ -76,10 +76,10 @@ def count_kernels(program):
         return {name: total(Path(f"{folder}/counts.{place}")) for place, name in enumerate(names, 1)}
 
 
-def count_render(program, scene, *more):
+def count_render(program, scene, *more, crop=CROP):
     """Instructions of a small render, from its first sample to its last: without reading the scene and writing the picture."""
     with tempfile.TemporaryDirectory() as folder:
-        options = ["--spp", SAMPLES, "--crop", CROP, "--threads", 1, "--seed", 1, "--quiet", *more]
+        options = ["--spp", SAMPLES, "--crop", crop, "--threads", 1, "--seed", 1, "--quiet", *more]
         callgrind(folder, RENDER, [program, "render", scene, *options, "-o", f"{folder}/picture.exr"])
         return total(Path(f"{folder}/counts"))
 

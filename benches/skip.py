@@ -5,24 +5,53 @@
     benches/skip.py --builds       # and what carrying a feature costs scenes without it: four builds more
 
 First: instructions of a small render of each bench scene with `--no-skip=ROW` over those without, for every row that the plan of the
-scene skips. Second: the same of the program that users get over one that was built without the feature; a plan costs at least the
-question. Counted by valgrind, like the gate.
+scene skips. Then what single rays skip: renders of scenes that differ in one number, which is zero or nearly. Last, the same of the
+program that users get over one that was built without the feature; a plan costs at least the question. Counted by valgrind, like the
+gate.
 """
 
 import argparse
 import os
 import subprocess
 import sys
+import tempfile
 import time
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import gate
 
-ROWS = ["lights", "absorption", "thin-sheets", "object-tree", "solids"]
+ROWS = ["lights", "absorption", "thin-sheets", "object-tree", "solids", "outlines"]
 # What carrying a feature may cost a scene without it.
 LIMIT = 0.005
 # Features that a build can be made without.
 BUILDS = ["absorption", "images", "lights", "thin sheets"]
+
+# A ball of a material before a sky, and pairs of materials: what has nothing to follow, and what has nearly nothing.
+BALL = """[render]
+integrator = "{integrator}"
+size = [128, 96]
+
+[camera]
+type = "pinhole"
+position = [0, 0, 5]
+target = [0, 0, 0]
+fov = {fov}
+
+[background]
+type = "constant"
+color = 0.5
+
+[[object]]
+shape = "sphere"
+center = [0, 0, 0]
+radius = 1
+material = {{ {material} }}
+"""
+PAIRS = {
+    "a coefficient of zero": ("whitted", 'type = "transparent", ior = 1.5, kr = {}, kt = 1', "0", "1e-9"),
+    "indices that match": ("path", 'type = "dielectric", ior = {}, sigma_a = 1', "1", "1.0001"),
+}
 
 
 def costs(program, scenes, pool, *options):
@@ -33,6 +62,27 @@ def table(heading, rows, scenes, cell):
     print(f"| {heading} | " + " | ".join(s.stem[:2] for s in scenes) + " |\n|---|" + "---:|" * len(scenes))
     for row in rows:
         print(f"| {row} | " + " | ".join(cell(row, scene) for scene in scenes) + " |")
+
+
+def pairs(program):
+    """What following nearly nothing costs, for each pair."""
+    with tempfile.TemporaryDirectory() as folder:
+        for name, (integrator, material, nothing, nearly) in PAIRS.items():
+            counts = []
+            for number in (nothing, nearly):
+                scene = Path(folder) / "scene.toml"
+                scene.write_text(BALL.format(integrator=integrator, fov=24, material=material.format(number)))
+                counts.append(gate.count_render(program, scene, "--cutoff", "0", "--max-depth", "8"))
+            print(f"{name}: {nearly} in the place of {nothing} costs {100 * (counts[1] / counts[0] - 1):+.0f} %", flush=True)
+
+
+def outlines(program):
+    """What searching pixels costs that no object reaches, in a picture that is mostly sky."""
+    with tempfile.TemporaryDirectory() as folder:
+        scene = Path(folder) / "scene.toml"
+        scene.write_text(BALL.format(integrator="path", fov=60, material='type = "dielectric", ior = 1.5'))
+        skipping, doing = (gate.count_render(program, scene, *more, crop="0,0,128,96") for more in ([], ["--no-skip=outlines"]))
+        print(f"outlines: searching the sky around a ball costs {100 * (doing / skipping - 1):+.0f} %", flush=True)
 
 
 def build_without(feature):
@@ -59,6 +109,9 @@ def main():
         # Where nothing changed, the scene does it anyway, or has no occasion to.
         change = lambda of, scene: f"{100 * (of[scene] / plain[scene] - 1):+.1f} %" if of[scene] != plain[scene] else "-"
         table("done all the same", doing, gate.SCENES, lambda row, scene: change(doing[row], scene))
+        print()
+        pairs(vitrum)
+        outlines(vitrum)
         if not options.builds:
             return
         print()

@@ -163,10 +163,57 @@ fn each_can_be_made_to_run() {
         assert_eq!(uses(text, integrator, none, feature), 0, "{}", feature.name());
         assert!(uses(text, integrator, no_skip, feature) > 0, "{}", feature.name());
     }
+    // Camera rays of pixels that no object reaches are searched for, or not.
+    let unsearched =
+        |no_skip| rendered(&load(BARE, folder.path()), Integrator::Path, no_skip).stats.unsearched_rays;
+    assert!(unsearched(none) > 0);
+    assert_eq!(unsearched(NoSkip { outlines: true, ..none }), 0);
     // Rays inside a solid are asked of it first, or not.
     let inner = |no_skip| {
         rendered(&load(&glass, folder.path()), Integrator::Path, no_skip).stats.geometry.inner_searches
     };
     assert!(inner(none) > 0);
     assert_eq!(inner(NoSkip { solids: true, ..none }), 0);
+}
+
+/// Rays that are not followed because nothing would come of them: counted in builds of all kinds.
+#[test]
+fn single_rays_skip_what_they_can() {
+    let folder = files();
+    let stats = |material: &str, integrator| {
+        let (sky, _) = BARE.split_once("[[object]]").expect("it has one object");
+        rendered(&load(&format!("{sky}{}", ball(material)), folder.path()), integrator, NoSkip::default())
+            .stats
+    };
+    for integrator in [Integrator::Whitted, Integrator::Path] {
+        let glass = stats("type = \"transparent\", ior = 1.5, kr = 0.1, kt = 0.9", integrator);
+        assert!(glass.reflected_rays > 0 && glass.transmitted_rays > 0);
+        // No ray follows a coefficient of zero. (Total reflection has one all the same, but not in a ball.)
+        let clear = stats("type = \"transparent\", ior = 1.5, kr = 0.0, kt = 1.0", integrator);
+        assert!(clear.transmitted_rays > 0);
+        assert_eq!(clear.reflected_rays, 0, "kr = 0");
+        let opaque = stats("type = \"transparent\", ior = 1.5, kr = 0.5, kt = 0.0", integrator);
+        assert!(opaque.reflected_rays > 0);
+        assert_eq!(opaque.transmitted_rays, 0, "kt = 0");
+        // Where indices match nothing is reflected.
+        let matched = stats("type = \"dielectric\", ior = 1.0, sigma_a = 1", integrator);
+        assert!(matched.transmitted_rays > 0);
+        assert_eq!(matched.reflected_rays, 0, "indices that match");
+    }
+}
+
+/// A camera that looks past everything asks no tree of objects, however many there are.
+#[test]
+fn pixels_of_the_background_search_nothing() {
+    let folder = files();
+    let (text, integrator) = showing(Feature::ObjectTree);
+    let away = text.replace("target = [0, 0, 0]", "target = [0, 0, 10]");
+    let [seeing, past] =
+        [&text, &away].map(|text| rendered(&load(text, folder.path()), integrator, NoSkip::default()).stats);
+    assert!(seeing.unsearched_rays > 0 && seeing.unsearched_rays < seeing.camera_rays);
+    assert_eq!((past.geometry.tree_searches, past.unsearched_rays), (0, past.camera_rays));
+    if Uses::ARE_COUNTED {
+        assert!(seeing.geometry.tree_searches > 0);
+    }
+    assert!(past.camera_rays > 0);
 }

@@ -10,6 +10,8 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
 FOLDER = ROOT / "target" / "peers"
+# What Mitsuba compiles with. Versions up to 15 do not know the newest processors, and end the program.
+LLVM = 19
 
 
 class Missing(Exception):
@@ -63,20 +65,41 @@ class Renderer:
     has_seeds: bool = True
 
 
+def package(name: str):
+    """Installs a package of the system where that is allowed; whether it worked is seen by what it brings."""
+    if os.geteuid() == 0 and shutil.which("apt-get"):
+        print(f"installing the package {name}", flush=True)
+        command = ["apt-get", "install", "-y", "--no-install-recommends", name]
+        done = subprocess.run(command, capture_output=True, text=True)
+        if done.returncode:
+            print(done.stderr.strip(), flush=True)
+
+
 def povray():
     if not shutil.which("povray"):
-        if os.geteuid() == 0 and shutil.which("apt-get"):
-            print("povray: installing the package", flush=True)
-            subprocess.run(["apt-get", "install", "-y", "povray"], capture_output=True)
+        package("povray")
         if not shutil.which("povray"):
             raise Missing("apt-get install povray")
     return environment("run")
 
 
+def mitsuba():
+    """With the LLVM that compiles its vectorised variant; without it, Mitsuba takes what it finds, or the scalar variant."""
+    libraries = lambda: sorted(Path("/usr/lib").glob(f"*/libLLVM-{LLVM}.so"))
+    if "DRJIT_LIBLLVM_PATH" not in os.environ:
+        if not libraries():
+            package(f"libllvm{LLVM}")
+        if libraries():
+            os.environ["DRJIT_LIBLLVM_PATH"] = str(libraries()[0])
+        else:
+            print(f"mitsuba: no LLVM {LLVM}; what it finds may be slower, or not know this processor", flush=True)
+    return environment("mitsuba")
+
+
 def renderer(name: str) -> Renderer:
     """What is missing is installed."""
     shown, program, has_seeds = {
-        "mitsuba": ("Mitsuba 3", lambda: environment("mitsuba"), True),
+        "mitsuba": ("Mitsuba 3", mitsuba, True),
         "luxcore": ("LuxCore", lambda: environment("luxcore"), True),
         "cycles": ("Cycles", lambda: environment("cycles", "3.13"), True),
         "povray": ("POV-Ray", povray, False),

@@ -1,5 +1,8 @@
 """Renders a scene with Mitsuba 3. What is set and why is in README.md."""
 
+import os
+from pathlib import Path
+
 import job as jobs
 import mitsuba as mi
 import numpy as np
@@ -173,7 +176,8 @@ def main():
         total = total + sampler.sample_count() * picture
         taken += sampler.sample_count()
     mi.Bitmap((total / taken).astype(np.float32)).write(str(job.output))
-    job.rendered(f"{mi.__version__} {mi.variant()}", taken)
+    library = Path(os.environ.get("DRJIT_LIBLLVM_PATH", "")).stem
+    job.rendered(f"{mi.__version__} {mi.variant()} {library}".strip(), taken)
 
 
 if __name__ == "__main__":

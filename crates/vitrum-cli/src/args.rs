@@ -240,14 +240,18 @@ pub(crate) struct Bench {
 #[derive(Debug, Args)]
 pub(crate) struct Page {
     /// Results (.jsonl); their pictures lie where they say, relative to them
-    #[arg(required = true)]
+    #[arg(required_unless_present = "costs")]
     pub(crate) results: Vec<PathBuf>,
+
+    /// How cost grows, as `benches/cost.py` of vitrum's sources measures it (.jsonl); may be given several times
+    #[arg(long, value_name = "FILE")]
+    pub(crate) costs: Vec<PathBuf>,
 
     /// Page to write: one HTML file that needs no other
     #[arg(short, long, value_name = "FILE", default_value = "index.html")]
     pub(crate) output: PathBuf,
 
-    /// Print the table of the page as Markdown, and write no page
+    /// Print the tables of the page as Markdown, and write no page
     #[arg(long)]
     pub(crate) markdown: bool,
 }
@@ -291,6 +295,8 @@ pub(crate) enum NoSkipChoice {
     ObjectTree,
     /// Searching everything from inside a solid
     Solids,
+    /// Searching pixels that no object reaches
+    Outlines,
 }
 
 /// What `--no-skip` says: nothing, everything, or what it lists.
@@ -306,6 +312,7 @@ pub(crate) fn no_skip(asked: Option<&[NoSkipChoice]>) -> NoSkip {
             NoSkipChoice::ThinSheets => found.thin_sheets = true,
             NoSkipChoice::ObjectTree => found.object_tree = true,
             NoSkipChoice::Solids => found.solids = true,
+            NoSkipChoice::Outlines => found.outlines = true,
         }),
     }
     found

@@ -176,6 +176,10 @@ fn plan(out: &mut String, plan: &Plan, loaded: &Loaded, integrator: Integrator) 
         };
         writeln!(out, "  {:<18} {how}", feature.name())?;
     }
+    let [width, height] = loaded.settings.size.map(f64::from);
+    let background =
+        vitrum_tracer::background_pixels(&loaded.scene, &loaded.settings) as f64 / (width * height);
+    writeln!(out, "  {:<18} {:.0} % of the pixels, not searched", "background alone", 100.0 * background)?;
     if plan.invisible > 0 {
         writeln!(out, "  {:<18} {} left out", "invisible", count(plan.invisible, "object"))?;
     }

@@ -19,8 +19,12 @@ pub(crate) struct Report {
     /// What all threads together were busy while rendering.
     pub(crate) processors: f64,
     pub(crate) writing: f64,
+    /// The most that the process has had so far, bytes; zero where the system does not tell.
+    pub(crate) memory: u64,
     pub(crate) samples: u64,
     pub(crate) camera_rays: u64,
+    /// Those among them that no object can be in the way of.
+    pub(crate) unsearched_rays: u64,
     pub(crate) reflected_rays: u64,
     pub(crate) transmitted_rays: u64,
     pub(crate) shadow_rays: u64,
@@ -43,8 +47,10 @@ impl Report {
             rendering: phases.rendering.as_secs_f64(),
             processors: phases.processors.as_secs_f64(),
             writing: phases.writing.as_secs_f64(),
+            memory: most_memory().unwrap_or(0),
             samples: stats.samples,
             camera_rays: stats.camera_rays,
+            unsearched_rays: stats.unsearched_rays,
             reflected_rays: stats.reflected_rays,
             transmitted_rays: stats.transmitted_rays,
             shadow_rays: stats.shadow_rays,
@@ -55,9 +61,10 @@ impl Report {
         }
     }
 
-    /// Rays of all kinds, those of the pilot too.
+    /// Rays of all kinds that are searched for, those of the pilot too.
     pub(crate) fn rays(&self) -> u64 {
-        self.camera_rays + self.reflected_rays + self.transmitted_rays + self.shadow_rays + self.pilot_rays
+        let camera_rays = self.camera_rays - self.unsearched_rays;
+        camera_rays + self.reflected_rays + self.transmitted_rays + self.shadow_rays + self.pilot_rays
     }
 
     pub(crate) fn write(&self, path: &Path) -> Result<(), Failure> {
@@ -71,4 +78,12 @@ impl Report {
         serde_json::from_str(&text)
             .map_err(|e| Failure::running(format!("{}: is no report of a render ({e})", path.display())))
     }
+}
+
+/// As Linux tells.
+fn most_memory() -> Option<u64> {
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kibibytes * 1024)
 }

@@ -18,7 +18,7 @@ pub(crate) struct Phases {
 pub(crate) fn summary(rendering: &Rendering, is_limited: bool, phases: &Phases, output: &Path) -> String {
     let stats = &rendering.stats;
     let seconds = |d: Duration| format!("{:.2} s", d.as_secs_f64());
-    let rate = stats.rays() as f64 / phases.rendering.as_secs_f64().max(1e-9) / 1e6;
+    let rate = stats.searched_rays() as f64 / phases.rendering.as_secs_f64().max(1e-9) / 1e6;
     let mut text = String::new();
     let mut line = |name: &str, value: String| {
         // Writing to a String can't fail.
@@ -48,11 +48,15 @@ pub(crate) fn summary(rendering: &Rendering, is_limited: bool, phases: &Phases, 
             seconds(phases.writing)
         ),
     );
+    let background = match stats.unsearched_rays {
+        0 => String::new(),
+        some => format!(", less {some} that only the background can meet"),
+    };
     line(
         "rays",
         format!(
-            "{} ({rate:.1} million/s): {} camera, {} reflected, {} transmitted, {} shadow",
-            stats.rays(),
+            "{} ({rate:.1} million/s): {} camera, {} reflected, {} transmitted, {} shadow{background}",
+            stats.searched_rays(),
             stats.camera_rays,
             stats.reflected_rays,
             stats.transmitted_rays,

@@ -149,7 +149,8 @@ impl AreaSampler {
     }
 
     /// A point of the surface for a point of the unit square; `None` where it sees nothing of it.
-    #[inline]
+    // Always: there are several callers, and the compiler would not inline it into any.
+    #[inline(always)]
     pub fn sample(&self, from: DVec3, u: [f64; 2]) -> Option<AreaSample> {
         match &self.kind {
             Kind::Sphere { sphere, flipped } => sample_sphere(sphere, *flipped, from, u),

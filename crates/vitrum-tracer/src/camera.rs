@@ -85,6 +85,11 @@ impl Camera {
         matches!(self.projection, Projection::ThinLens { lens_radius, .. } if lens_radius > 0.0)
     }
 
+    /// False where `up` was so nearly parallel to the view that the axes of the picture are not perpendicular to it.
+    pub(crate) fn is_square(&self) -> bool {
+        [self.right, self.up].iter().all(|axis| self.forward.dot(*axis).abs() <= 1e-12 * axis.length())
+    }
+
     /// Where the camera stands, metres.
     pub fn position(&self) -> DVec3 {
         self.position
@@ -95,12 +100,37 @@ impl Camera {
         &self.projection
     }
 
+    /// From the middle of the film to a point of it, per unit of distance.
+    #[inline]
+    fn across(&self, x: f64, y: f64, [width, height]: [u32; 2]) -> DVec3 {
+        let (width, height) = (f64::from(width), f64::from(height));
+        self.right * ((2.0 * x - width) / height) + self.up * (1.0 - 2.0 * y / height)
+    }
+
+    /// Where rays of a pinhole camera go, linear in the film point; of any length.
+    pub(crate) fn towards(&self, x: f64, y: f64, size: [u32; 2]) -> DVec3 {
+        self.forward + self.across(x, y, size)
+    }
+
+    /// The film point, times a depth, of a point at `offset` from the middle of the lens; and the depth, which is not above 0 for
+    /// what is behind a camera that sees from a point.
+    pub(crate) fn on_film(&self, offset: DVec3, [width, height]: [u32; 2]) -> [f64; 3] {
+        let depth = match self.projection {
+            Projection::Pinhole { .. } | Projection::ThinLens { .. } => self.forward.dot(offset),
+            Projection::Orthographic { .. } => 1.0,
+        };
+        let along = |axis: DVec3| axis.dot(offset) / axis.dot(axis);
+        let (width, height) = (f64::from(width), f64::from(height));
+        let x = 0.5 * (width * depth + height * along(self.right));
+        let y = 0.5 * height * (depth - along(self.up));
+        [x, y, depth]
+    }
+
     /// The ray of the film point `(x, y)`, in pixels from the upper left corner of an image of `size` pixels. `lens` gives a
     /// point of the unit square, and is asked only by a camera with a lens.
     #[inline]
     pub fn ray(&self, x: f64, y: f64, size: [u32; 2], lens: impl FnOnce() -> [f64; 2]) -> Ray {
-        let (width, height) = (f64::from(size[0]), f64::from(size[1]));
-        let across = self.right * ((2.0 * x - width) / height) + self.up * (1.0 - 2.0 * y / height);
+        let across = self.across(x, y, size);
         match self.projection {
             Projection::Pinhole { .. } => Ray::new(self.position, unit(self.forward + across)),
             Projection::Orthographic { .. } => Ray::new(self.position + across, self.forward),

@@ -39,6 +39,17 @@ pub(crate) struct FilterSampler {
     distances: Vec<f64>,
 }
 
+impl Filter {
+    /// How far it goes from the middle of a pixel, pixels.
+    pub(crate) fn reach(self) -> f64 {
+        match self {
+            Self::Box => 0.5,
+            Self::Tent => 1.0,
+            Self::BlackmanHarris => REACH,
+        }
+    }
+}
+
 impl FilterSampler {
     pub(crate) fn new(filter: Filter) -> Self {
         let distances = match filter {

@@ -136,7 +136,8 @@ impl LightSampler {
     }
 
     /// A light for `u` in [0, 1); `None` where no light reaches.
-    #[inline]
+    // Always: there are six walkers, and with so many callers the compiler would not.
+    #[inline(always)]
     pub(crate) fn choose(&self, scene: &Scene, from: DVec3, u: f64) -> Option<Chosen<'_>> {
         if let [only] = &self.sources[..] {
             return Some(Chosen { source: only, probability: 1.0, left: u });
@@ -151,7 +152,8 @@ impl LightSampler {
     }
 
     /// The density, per steradian, with which a point asks for the point of the object that `hit` is; `None` if that is no light.
-    #[inline]
+    // Always: there are six walkers, and with so many callers the compiler would not.
+    #[inline(always)]
     pub(crate) fn pdf(&self, scene: &Scene, from: DVec3, hit: &SurfaceInteraction) -> Option<f64> {
         let index = self.of_object[hit.object as usize]? as usize;
         let Source::Area { sampler, .. } = &self.sources[index] else { return None };

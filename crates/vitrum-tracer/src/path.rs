@@ -35,7 +35,10 @@ const GUARDED_SURVIVAL: f64 = 0.25;
 const SHORT: f64 = 1e-9;
 
 /// Random paths.
-pub(crate) struct Path;
+pub(crate) struct Path<const ABSORPTION: bool, const THIN_SHEETS: bool>;
+
+/// Random paths in any scene.
+pub(crate) type AnyPath = Path<true, true>;
 
 /// What a node of a path remembers.
 #[derive(Clone, Copy)]
@@ -55,10 +58,19 @@ struct Chance {
     from: DVec3,
 }
 
-impl Policy for Path {
+impl<const ABSORPTION: bool, const THIN_SHEETS: bool> Policy for Path<ABSORPTION, THIN_SHEETS> {
     type Memory = Trace;
 
     const ROOT: Trace = Trace { key: NodeKey::ROOT, chance: None };
+
+    #[inline(always)]
+    fn can(feature: Feature) -> bool {
+        match feature {
+            Feature::Absorption => ABSORPTION,
+            Feature::ThinSheets => THIN_SHEETS,
+            _ => true,
+        }
+    }
 
     #[inline]
     fn hit(
@@ -81,7 +93,7 @@ impl Policy for Path {
         light
     }
 
-    #[inline]
+    #[inline(always)]
     fn escape(walker: &Walker<'_, Self>, node: &Node<Trace>) -> Rgb {
         let direction = node.query.ray.direction;
         match walker.lights.environment() {
@@ -97,7 +109,7 @@ impl Policy for Path {
 
 type PathNode = Node<Trace>;
 
-impl Walker<'_, Path> {
+impl<const ABSORPTION: bool, const THIN_SHEETS: bool> Walker<'_, Path<ABSORPTION, THIN_SHEETS>> {
     /// The radiance that a hit sends towards where the ray came from, apart from what comes along its children.
     #[inline]
     fn light(
@@ -112,7 +124,7 @@ impl Walker<'_, Path> {
             light +=
                 scattering.emitted * self.share_met(node, |from| self.lights.pdf(self.scene, from, surface));
         }
-        if self.plan.needs(Feature::Lights) && scattering.answers_lights() {
+        if self.needs(Feature::Lights) && scattering.answers_lights() {
             light += self.ask_a_light(node, surface, scattering, address);
         }
         light
@@ -208,13 +220,13 @@ impl Walker<'_, Path> {
         }
         self.stats.shadow_rays += 1;
         let mut query = surface.leave(towards, side);
-        let mut share = if self.plan.needs(Feature::Absorption) {
+        let mut share = if self.needs(Feature::Absorption) {
             self.stats.uses.count(Feature::Absorption);
             self.scene.absorption_of(self.medium(node, surface, side)).transmittance(distance)
         } else {
             Rgb::ONE
         };
-        if !self.plan.needs(Feature::ThinSheets) {
+        if !self.needs(Feature::ThinSheets) {
             let blocked = self.scene.aggregate().occluded(&query, distance, &mut self.stats.geometry);
             return if blocked { Rgb::ZERO } else { share };
         }
@@ -270,6 +282,8 @@ impl Walker<'_, Path> {
         let (reflected, transmitted) = (share(&split.reflected), share(&split.transmitted));
         let diffuse = if scatters { scattering.albedo() } else { 0.0 };
         let total = reflected + transmitted + diffuse;
+        // Where there is one way, nothing is left to choose.
+        let all = all || !scatters && (split.reflected.is_none() || split.transmitted.is_none());
         let at = if all { 0.0 } else { choice() * total };
         // All of them, or one in proportion to its share.
         if let Some(child) = &split.reflected

@@ -17,7 +17,7 @@
 use crate::film::{Film, SQUARE};
 use crate::filter::FilterSampler;
 use crate::light_sampler::LightSampler;
-use crate::path::Path;
+use crate::path::AnyPath;
 use crate::plan::Plan;
 use crate::render::Progress;
 use crate::scene::Scene;
@@ -101,7 +101,7 @@ pub(crate) fn branching(
         let count = squares.min(across);
         (0..count).map(|i| (2 * i + 1) * squares / (2 * count)).collect()
     });
-    let survey = |walker: &mut Walker<'_, Path>, square| trial::nets(walker, filter, square);
+    let survey = |walker: &mut Walker<'_, AnyPath>, square| trial::nets(walker, filter, square);
     let (surveyed, survey_rays) = tried(what, &all_over, survey, progress);
     let verdict = Verdict::of(&surveyed);
 
@@ -110,7 +110,7 @@ pub(crate) fn branching(
     let from = first.map(|square| square.saturating_sub(1));
     let to = [(first[0] + columns + 1).min(whole[0]), (first[1] + rows + 1).min(whole[1])];
     let here = [0, 1].map(|axis| (from[axis]..to[axis]).collect::<Vec<u32>>());
-    let look = |walker: &mut Walker<'_, Path>, square| trial::singles(walker, filter, square);
+    let look = |walker: &mut Walker<'_, AnyPath>, square| trial::singles(walker, filter, square);
     let (found, rays) = tried(what, &here, look, progress);
     let judged = |at: u32| {
         let (column, row) = (first[0] + at % columns, first[1] + at / columns);
@@ -130,13 +130,13 @@ pub(crate) fn branching(
 fn tried<T: Default + Send>(
     (scene, lights, settings, plan): (&Scene, &LightSampler, &Settings, &Plan),
     [columns, rows]: &[Vec<u32>; 2],
-    look: impl Fn(&mut Walker<'_, Path>, [u32; 2]) -> T + Sync,
+    look: impl Fn(&mut Walker<'_, AnyPath>, [u32; 2]) -> T + Sync,
     progress: &dyn Progress,
 ) -> (Vec<T>, u64) {
     let squares: Vec<[u32; 2]> =
         rows.iter().flat_map(|row| columns.iter().map(|column| [*column, *row])).collect();
     let done = on_each(settings, &squares, |square| {
-        let mut walker = Walker::<Path>::new(scene, lights, settings, plan);
+        let mut walker = Walker::<AnyPath>::new(scene, lights, settings, plan);
         let found = if progress.is_stopped() { T::default() } else { look(&mut walker, *square) };
         (found, walker.stats.rays())
     });

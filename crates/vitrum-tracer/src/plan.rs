@@ -1,7 +1,7 @@
 //! What a scene needs, and what it can skip.
 //!
-//! Decided once, before the first ray. The ray tree asks it for lights and ambient light; the rest is decided where it is
-//! built (trees, isolated solids, lens, normals) and told here.
+//! Decided once, before the first ray. It chooses the walker, and the walker asks it; the rest is decided where it is built
+//! (trees, isolated solids, lens, normals) and told here.
 
 use crate::feature::Feature;
 use crate::light_sampler::LightSampler;
@@ -149,7 +149,8 @@ impl Plan {
         let left_out = Feature::ALL.into_iter().find(|feature| needed.wants(*feature) && !feature.is_built());
         assert!(left_out.is_none(), "this build was made without what the scene needs: {left_out:?}");
         // What is made to run: it changes nothing.
-        let NoSkip { lights, ambient, absorption, thin_sheets, object_tree: _, solids: _ } = settings.no_skip;
+        let NoSkip { lights, ambient, absorption, thin_sheets, object_tree: _, solids: _, outlines: _ } =
+            settings.no_skip;
         Self {
             lights: needed.lights.max(usize::from(lights)),
             ambient: needed.ambient || ambient && !is_path,

@@ -1,8 +1,10 @@
 //! Tiles, samples and threads.
 
+use crate::feature::Feature;
 use crate::film::{Buffer, Film, Pixel, PixelSum};
 use crate::filter::FilterSampler;
 use crate::light_sampler::LightSampler;
+use crate::outlines::Outlines;
 use crate::path::Path;
 use crate::pilot;
 use crate::plan::Plan;
@@ -152,20 +154,19 @@ fn render_here(scene: &Scene, settings: &Settings, mut film: Film, progress: &dy
     let work: Vec<(usize, Crop)> =
         (0..film.buffers().len()).flat_map(|buffer| tiles.iter().map(move |tile| (buffer, *tile))).collect();
     let filter = FilterSampler::new(settings.filter);
+    let outlines = Outlines::new(scene, settings);
     let (branching, pilot_rays) =
         pilot::branching((scene, &lights, settings, &plan), &filter, &film, progress);
     stats.pilot_rays = pilot_rays;
     let mut schedule = Schedule::new(settings);
+    let render_tile = smallest(&plan, settings.integrator);
     loop {
         if let Err(ended) = schedule.next(&mut film, progress) {
             return Rendering { film, stats, plan, branching, ended };
         }
         let render = |(buffer, tile): &(usize, Crop)| {
-            let (what, how) = ((scene, &lights, settings, &plan), (&branching[..], &filter));
-            let done = match settings.integrator {
-                Integrator::Whitted => render_tile::<Whitted>(what, how, &film, *buffer, *tile, progress),
-                Integrator::Path => render_tile::<Path>(what, how, &film, *buffer, *tile, progress),
-            }?;
+            let (what, how) = ((scene, &lights, settings, &plan), (&branching[..], &filter, &outlines));
+            let done = render_tile(what, how, &film, *buffer, *tile, progress)?;
             progress.advance(done.1.samples, done.1.rays());
             Some(done)
         };
@@ -222,10 +223,33 @@ fn tiles(settings: &Settings) -> Vec<Crop> {
         .collect()
 }
 
+/// [`render_tile`] by one of the walkers.
+type RenderTile = fn(
+    (&Scene, &LightSampler, &Settings, &Plan),
+    (&[Branching], &FilterSampler, &Outlines),
+    &Film,
+    usize,
+    Crop,
+    &dyn Progress,
+) -> Option<(Vec<Pixel>, Stats)>;
+
+/// By the smallest walker that can do what the scene needs.
+fn smallest(plan: &Plan, integrator: Integrator) -> RenderTile {
+    let (absorption, thin_sheets) = (plan.needs(Feature::Absorption), plan.needs(Feature::ThinSheets));
+    match (integrator, absorption, thin_sheets) {
+        (Integrator::Whitted, false, _) => render_tile::<Whitted<false>>,
+        (Integrator::Whitted, true, _) => render_tile::<Whitted<true>>,
+        (Integrator::Path, false, false) => render_tile::<Path<false, false>>,
+        (Integrator::Path, false, true) => render_tile::<Path<false, true>>,
+        (Integrator::Path, true, false) => render_tile::<Path<true, false>>,
+        (Integrator::Path, true, true) => render_tile::<Path<true, true>>,
+    }
+}
+
 /// What the present round brings to the pixels of a tile, row by row; `None` when the render is to stop before the tile is done.
 fn render_tile<P: Policy>(
     (scene, lights, settings, plan): (&Scene, &LightSampler, &Settings, &Plan),
-    (branching, filter): (&[Branching], &FilterSampler),
+    (branching, filter, outlines): (&[Branching], &FilterSampler, &Outlines),
     film: &Film,
     buffer: usize,
     tile: Crop,
@@ -242,6 +266,7 @@ fn render_tile<P: Policy>(
             let square = film.square(x, y);
             let (from, to) = (before[film.place(x, y)].taken, goals[square]);
             walker.branching = branching[square];
+            walker.sees_objects = outlines.may_reach([x, y]);
             let rays = walker.stats.rays();
             for sample in from..to {
                 if progress.is_stopped() {

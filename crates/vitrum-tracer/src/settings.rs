@@ -76,6 +76,8 @@ pub struct NoSkip {
     pub object_tree: bool,
     /// Rays inside solids search everything.
     pub solids: bool,
+    /// Pixels are searched that no object reaches.
+    pub outlines: bool,
 }
 
 impl NoSkip {
@@ -87,6 +89,7 @@ impl NoSkip {
         thin_sheets: true,
         object_tree: true,
         solids: true,
+        outlines: true,
     };
 }
 

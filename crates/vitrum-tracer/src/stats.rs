@@ -10,6 +10,8 @@ pub struct Stats {
     pub samples: u64,
     /// Rays from the camera.
     pub camera_rays: u64,
+    /// Those among them that were not searched for: no object reaches their pixel.
+    pub unsearched_rays: u64,
     /// Rays that stayed on their side of a surface.
     pub reflected_rays: u64,
     /// Rays that crossed a surface.
@@ -56,6 +58,11 @@ pub struct GivenUp {
 }
 
 impl Stats {
+    /// Rays of all kinds that were searched for.
+    pub fn searched_rays(&self) -> u64 {
+        self.rays() - self.unsearched_rays
+    }
+
     /// Rays of all kinds.
     pub fn rays(&self) -> u64 {
         self.camera_rays + self.reflected_rays + self.transmitted_rays + self.shadow_rays
@@ -81,6 +88,7 @@ impl Stats {
     pub(crate) fn merge(&mut self, other: &Self) {
         self.samples += other.samples;
         self.camera_rays += other.camera_rays;
+        self.unsearched_rays += other.unsearched_rays;
         self.reflected_rays += other.reflected_rays;
         self.transmitted_rays += other.transmitted_rays;
         self.shadow_rays += other.shadow_rays;

@@ -10,7 +10,7 @@
 
 use crate::film::{BLOCK, SQUARE};
 use crate::filter::FilterSampler;
-use crate::path::Path;
+use crate::path::AnyPath;
 use crate::settings::Branching;
 use crate::walker::Walker;
 use vitrum_math::{Rgb, SampleAddress};
@@ -74,7 +74,11 @@ impl Findings {
 }
 
 /// Tries a square, given by its column and row in the whole image, with single samples.
-pub(crate) fn singles(walker: &mut Walker<'_, Path>, filter: &FilterSampler, square: [u32; 2]) -> Findings {
+pub(crate) fn singles(
+    walker: &mut Walker<'_, AnyPath>,
+    filter: &FilterSampler,
+    square: [u32; 2],
+) -> Findings {
     let (pixels, cost) = samples::<1>(walker, filter, square);
     let mut found = Findings { cost, ..Findings::default() };
     add_singles(&mut found, &pixels, 0, 1.0);
@@ -82,7 +86,11 @@ pub(crate) fn singles(walker: &mut Walker<'_, Path>, filter: &FilterSampler, squ
 }
 
 /// Tries a square with nets: what their samples tell one by one, and what they tell.
-pub(crate) fn nets(walker: &mut Walker<'_, Path>, filter: &FilterSampler, square: [u32; 2]) -> [Findings; 2] {
+pub(crate) fn nets(
+    walker: &mut Walker<'_, AnyPath>,
+    filter: &FilterSampler,
+    square: [u32; 2],
+) -> [Findings; 2] {
     let (pixels, cost) = samples::<NET>(walker, filter, square);
     let [mut of_singles, mut of_nets] = [Findings { cost, ..Findings::default() }; 2];
     for at in 0..NET {
@@ -111,7 +119,7 @@ fn mean(samples: &[Returned]) -> Rgb {
 
 /// For each pixel that is tried so many samples of two sequences; and what a sample costs, summed over the pixels.
 fn samples<const N: usize>(
-    walker: &mut Walker<'_, Path>,
+    walker: &mut Walker<'_, AnyPath>,
     filter: &FilterSampler,
     [column, row]: [u32; 2],
 ) -> (Vec<[[Returned; N]; 2]>, [f64; WAYS.len()]) {

@@ -25,6 +25,9 @@ pub(crate) trait Policy: Sized {
     /// That of the camera ray.
     const ROOT: Self::Memory;
 
+    /// Whether a walker of this policy can do it: what it can't leaves no instruction, not even a question.
+    fn can(feature: Feature) -> bool;
+
     /// What a hit does: returns the radiance that it sends to where the ray came from, apart from what comes along its
     /// children, and puts these into the tree.
     fn hit(
@@ -37,7 +40,8 @@ pub(crate) trait Policy: Sized {
     ) -> Rgb;
 
     /// What a ray that escapes brings.
-    #[inline]
+    // Always: called from two places, it would no longer be inlined into the loop, which costs up to half a per cent.
+    #[inline(always)]
     fn escape(walker: &Walker<'_, Self>, node: &Node<Self::Memory>) -> Rgb {
         walker.scene.background.radiance(node.query.ray.direction)
     }
@@ -51,6 +55,8 @@ pub(crate) struct Walker<'s, P: Policy> {
     pub(crate) plan: &'s Plan,
     /// Which of the rays that glass divides a path follows.
     pub(crate) branching: Branching,
+    /// False where camera rays can't meet any object.
+    pub(crate) sees_objects: bool,
     tree: RayTree<P::Memory>,
     pub(crate) stats: Stats,
     /// Nodes of the present sample so far, where paths count them, and what their rays cost beyond one each (see
@@ -68,9 +74,19 @@ impl<'s, P: Policy> Walker<'s, P> {
         settings: &'s Settings,
         plan: &'s Plan,
     ) -> Self {
+        let is_enough = Feature::ALL.into_iter().all(|feature| P::can(feature) || !plan.needs(feature));
+        assert!(is_enough, "a walker was chosen that cannot do what the scene needs");
         let (tree, stats) = (RayTree::default(), Stats::default());
-        let branching = settings.branching;
-        Self { scene, lights, settings, plan, branching, tree, stats, nodes: 0, dearer: 0.0, given_up: 0.0 }
+        let (branching, sees_objects) = (settings.branching, true);
+        let (nodes, dearer, given_up) = (0, 0.0, 0.0);
+        Self { scene, lights, settings, plan, branching, sees_objects, tree, stats, nodes, dearer, given_up }
+    }
+
+    /// Whether rendering uses a feature.
+    // Always, because the feature is a constant wherever it is asked.
+    #[inline(always)]
+    pub(crate) fn needs(&self, feature: Feature) -> bool {
+        P::can(feature) && self.plan.needs(feature)
     }
 
     /// A sample of a pixel as the film takes it, rounded once; `None` when it is not finite or negative.
@@ -99,21 +115,17 @@ impl<'s, P: Policy> Walker<'s, P> {
         self.stats.camera_rays += 1;
         let mut tree = std::mem::take(&mut self.tree);
         tree.plant(Query::new(ray), P::ROOT);
-        let mut radiance = Rgb::ZERO;
+        let mut radiance = if self.sees_objects { Rgb::ZERO } else { self.unsearched(&mut tree) };
         while let Some((node, mut children)) = tree.next() {
             self.stats.deepest = self.stats.deepest.max(node.depth);
 
             // The ray escapes, or finds a surface; the medium takes its share of what it brings.
             let Some(hit) = self.scene.aggregate().closest(&node.query, &mut self.stats.geometry) else {
-                if self.plan.needs(Feature::Absorption) {
-                    self.stats.uses.count(Feature::Absorption);
-                    node.throughput *= self.scene.absorption_of(node.medium).transmittance(f64::INFINITY);
-                }
-                radiance += node.throughput * P::escape(self, node);
+                radiance += self.escaping(node);
                 continue;
             };
             let surface = self.scene.aggregate().interaction(&node.query, &hit, &mut self.stats.geometry);
-            if self.plan.needs(Feature::Absorption) {
+            if self.needs(Feature::Absorption) {
                 self.stats.uses.count(Feature::Absorption);
                 if node.depth == 0 {
                     // Where the camera stands, the first surface knows.
@@ -129,6 +141,25 @@ impl<'s, P: Policy> Walker<'s, P> {
         }
         self.tree = tree;
         radiance
+    }
+
+    /// What the first ray of a tree brings, which can't meet anything.
+    #[inline(never)]
+    fn unsearched(&mut self, tree: &mut RayTree<P::Memory>) -> Rgb {
+        self.stats.unsearched_rays += 1;
+        tree.next().map_or(Rgb::ZERO, |(node, _)| self.escaping(node))
+    }
+
+    /// What a ray brings that meets nothing.
+    // Always, because it is half of the loop above.
+    #[inline(always)]
+    fn escaping(&mut self, node: &Node<P::Memory>) -> Rgb {
+        let mut throughput = node.throughput;
+        if self.needs(Feature::Absorption) {
+            self.stats.uses.count(Feature::Absorption);
+            throughput *= self.scene.absorption_of(node.medium).transmittance(f64::INFINITY);
+        }
+        throughput * P::escape(self, node)
     }
 
     /// The specular children of a hit, with the frame that their directions are in: around the shading normal, unless that puts
@@ -157,7 +188,7 @@ impl<'s, P: Policy> Walker<'s, P> {
     /// What a ray goes through that leaves the surface to a side: what the surface says, or what the ray came through.
     #[inline]
     pub(crate) fn medium(&self, node: &Node<P::Memory>, surface: &SurfaceInteraction, side: Side) -> Medium {
-        if !self.plan.needs(Feature::Absorption) {
+        if !self.needs(Feature::Absorption) {
             return node.medium;
         }
         let inside = surface.front == (side == Side::Transmitted);

@@ -12,12 +12,20 @@ use vitrum_materials::Scattering;
 use vitrum_math::{Frame, Rgb, SampleAddress};
 
 /// The whole ray tree.
-pub(crate) struct Whitted;
+pub(crate) struct Whitted<const ABSORPTION: bool>;
 
-impl Policy for Whitted {
+impl<const ABSORPTION: bool> Policy for Whitted<ABSORPTION> {
     type Memory = ();
 
     const ROOT: () = ();
+
+    #[inline(always)]
+    fn can(feature: Feature) -> bool {
+        match feature {
+            Feature::Absorption => ABSORPTION,
+            _ => true,
+        }
+    }
 
     #[inline]
     fn hit(
@@ -42,7 +50,7 @@ impl Policy for Whitted {
     }
 }
 
-impl Walker<'_, Whitted> {
+impl<const ABSORPTION: bool> Walker<'_, Whitted<ABSORPTION>> {
     /// Emission, ambient light, and light from the lights.
     #[inline]
     fn local_light(&mut self, node: &Node<()>, surface: &SurfaceInteraction, scattering: &Scattering) -> Rgb {
@@ -50,15 +58,14 @@ impl Walker<'_, Whitted> {
         if surface.front {
             local += scattering.emitted;
         }
-        if self.plan.needs(Feature::AmbientLight) {
+        if self.needs(Feature::AmbientLight) {
             self.stats.uses.count(Feature::AmbientLight);
             local += scattering.ambient * self.scene.ambient;
         }
-        if self.plan.needs(Feature::Lights) && scattering.answers_lights() {
+        if self.needs(Feature::Lights) && scattering.answers_lights() {
             self.stats.uses.count(Feature::Lights);
             let normal = shading_normal(surface);
-            let medium =
-                self.plan.needs(Feature::Absorption).then(|| self.medium(node, surface, Side::Incident));
+            let medium = self.needs(Feature::Absorption).then(|| self.medium(node, surface, Side::Incident));
             let medium = medium.map(|medium| *self.scene.absorption_of(medium));
             let (scene, shadow) = (self.scene, self.settings.shadow);
             local += direct(scene, shadow, medium, surface, normal, scattering, &mut self.stats);

@@ -10,7 +10,7 @@ mod record;
 mod reference;
 mod scenes;
 
-pub(crate) use record::{Record, TELLING, read};
+pub(crate) use record::{Record, TELLING, lines, read};
 use scenes::BenchScene;
 
 use crate::args::Bench;
@@ -61,7 +61,7 @@ pub(crate) fn run(arguments: &Bench) -> Result<ExitCode, Failure> {
     for (records, path) in included.into_iter().zip(&arguments.include) {
         page::add(&mut all, records, path);
     }
-    page::write(&all, &arguments.output.join("index.html"))?;
+    page::write(&all, &[], &arguments.output.join("index.html"))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -3,6 +3,7 @@
 use super::{BenchScene, Run, program, reference::Reference};
 use crate::errors::{self, Errors};
 use crate::failure::Failure;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fs::{self, File};
 use std::io::Write;
@@ -64,13 +65,18 @@ pub(crate) const TELLING: f64 = 20.0;
 
 /// Reads a file of records.
 pub(crate) fn read(path: &Path) -> Result<Vec<Record>, Failure> {
+    lines(path, "result of a bench", "vitrum bench")
+}
+
+/// Reads a file with a JSON object on each line: what each is, and who writes them.
+pub(crate) fn lines<T: DeserializeOwned>(path: &Path, what: &str, by: &str) -> Result<Vec<T>, Failure> {
     let text = fs::read_to_string(path)
         .map_err(|e| Failure::usage(format!("{}: cannot be read ({e})", path.display())))?;
     let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let records = lines.map(|(number, line)| {
         serde_json::from_str(line).map_err(|e| {
             Failure::usage(format!(
-                "{}:{}: found no result of a bench ({e}); expected a line that `vitrum bench` wrote",
+                "{}:{}: found no {what} ({e}); expected a line that `{by}` wrote",
                 path.display(),
                 number + 1
             ))

@@ -1,6 +1,7 @@
 //! `vitrum page`, and the page that `vitrum bench` ends with: results as one HTML file that needs no other.
 
 mod figures;
+mod growth;
 mod pictures;
 mod plot;
 
@@ -10,6 +11,7 @@ use crate::failure::Failure;
 use crate::terminal::answer;
 pub(crate) use figures::in_order;
 use figures::{Figures, TARGETS};
+use growth::Cost;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::Path;
@@ -20,11 +22,16 @@ pub(crate) fn run(arguments: &Page) -> Result<ExitCode, Failure> {
     for path in &arguments.results {
         add(&mut all, bench::read(path)?, path);
     }
+    let mut costs = Vec::new();
+    for path in &arguments.costs {
+        costs.extend(growth::read(path)?);
+    }
     if arguments.markdown {
         let records: Vec<Record> = all.into_iter().map(|(record, _)| record).collect();
-        answer(&markdown(&records))?;
+        let results = if records.is_empty() { String::new() } else { markdown(&records) + "\n" };
+        answer((results + &growth::markdown(&costs)).trim_end())?;
     } else {
-        write(&all, &arguments.output)?;
+        write(&all, &costs, &arguments.output)?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -67,7 +74,7 @@ pub(crate) fn table(records: &[Record]) -> String {
     text
 }
 
-/// The table as Markdown.
+/// The table of results as Markdown.
 fn markdown(records: &[Record]) -> String {
     let headings = headings();
     let mut text = format!("| scene | program | {} |\n|---|---|", headings.join(" | "));
@@ -96,15 +103,27 @@ against seconds of rendering alone. A dash stands where the reference is not kno
 far as the runs allow, with the difference that an eye sees below (\u{a7fb}LIP: black is none).";
 
 /// Writes the page. Pictures lie relative to the folder beside each record.
-pub(crate) fn write(all: &[(Record, &Path)], output: &Path) -> Result<(), Failure> {
+pub(crate) fn write(all: &[(Record, &Path)], costs: &[Cost], output: &Path) -> Result<(), Failure> {
+    let mut html = format!(
+        "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"viewport\" \
+         content=\"width=device-width\"><title>vitrum: what pictures cost</title><style>{STYLE}</style>\n"
+    );
+    if !all.is_empty() {
+        html += &results(all)?;
+    }
+    if !costs.is_empty() {
+        html += &growth::html(costs)?;
+    }
+    html += "</html>\n";
+    Ok(vitrum_io::write_text(output, &html)?)
+}
+
+/// Figures, curves and pictures of all programs and scenes.
+fn results(all: &[(Record, &Path)]) -> Result<String, Failure> {
     let records: Vec<Record> = all.iter().map(|(record, _)| record.clone()).collect();
     let figures = Figures::of_all(&records);
     let programs = figures::in_order(records.iter().map(|r| r.program.as_str()));
-    let mut html = format!(
-        "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"viewport\" \
-         content=\"width=device-width\"><title>vitrum: run time against error</title><style>{STYLE}</style>\n\
-         <h1>Run time against error</h1>\n<p>{HOW}</p>\n"
-    );
+    let mut html = format!("<h1>Run time against error</h1>\n<p>{HOW}</p>\n");
     for program in &programs {
         let of = records.iter().filter(|r| r.program == *program);
         let machines = figures::in_order(of.clone().map(|r| r.machine.as_str()));
@@ -130,8 +149,7 @@ pub(crate) fn write(all: &[(Record, &Path)], output: &Path) -> Result<(), Failur
         html += &pictures::html(all, scene, &programs)?;
         html += "</div>\n";
     }
-    html += "</html>\n";
-    Ok(vitrum_io::write_text(output, &html)?)
+    Ok(html)
 }
 
 /// Text in HTML.

@@ -1,10 +1,11 @@
-//! Error against seconds, both in powers of ten, as SVG.
+//! Error against seconds, and seconds against what makes them grow, in powers of ten, as SVG.
 
 use super::figures::{Figures, Point};
 use crate::failure::Failure;
 use plotters::prelude::*;
 
 const SIZE: (u32, u32) = (560, 420);
+const SMALL: (u32, u32) = (420, 300);
 
 /// Colours that most eyes tell apart (Okabe and Ito 2008).
 const COLOURS: [RGBColor; 6] = [
@@ -64,6 +65,38 @@ fn draw(
         .border_style(BLACK.mix(0.2))
         .position(SeriesLabelPosition::LowerLeft)
         .draw()?;
+    root.present()?;
+    Ok(())
+}
+
+/// Seconds against a number of things.
+pub(super) fn growth(of: &str, points: &[[f64; 2]]) -> Result<String, Failure> {
+    let mut text = String::new();
+    draw_growth(of, points, &mut text)
+        .map_err(|e| Failure::running(format!("a plot could not be drawn ({e})")))?;
+    Ok(text)
+}
+
+fn draw_growth(of: &str, points: &[[f64; 2]], text: &mut String) -> Result<(), Box<dyn std::error::Error>> {
+    let [numbers, seconds] = [0, 1].map(|axis| powers(points.iter().map(|p| p[axis])));
+    let root = SVGBackend::with_string(text, SMALL).into_drawing_area();
+    let mut chart = ChartBuilder::on(&root)
+        .margin(8)
+        .x_label_area_size(36)
+        .y_label_area_size(56)
+        .build_cartesian_2d((numbers[0]..numbers[1]).log_scale(), (seconds[0]..seconds[1]).log_scale())?;
+    chart
+        .configure_mesh()
+        .x_desc(of)
+        .y_desc("seconds of rendering")
+        .x_label_formatter(&|v| power(*v))
+        .y_label_formatter(&|v| power(*v))
+        .light_line_style(BLACK.mix(0.05))
+        .bold_line_style(BLACK.mix(0.15))
+        .draw()?;
+    let line: Vec<(f64, f64)> = points.iter().map(|[number, seconds]| (*number, *seconds)).collect();
+    chart.draw_series(LineSeries::new(line.clone(), COLOURS[0].stroke_width(2)))?;
+    chart.draw_series(line.into_iter().map(|at| Circle::new(at, 3, COLOURS[0].filled())))?;
     root.present()?;
     Ok(())
 }

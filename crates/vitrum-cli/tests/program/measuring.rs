@@ -63,7 +63,12 @@ fn a_report_is_what_the_summary_says() {
     let report = String::from_utf8(place.read("report.json")).expect("it is text");
     assert_eq!(number(&report, "samples"), 16.0 * 12.0 * 2.0);
     let camera = format!(" {} camera,", number(&report, "camera_rays"));
-    assert!(outcome.stderr.contains(&camera), "{}", outcome.stderr);
+    let background =
+        format!(", less {} that only the background can meet", number(&report, "unsearched_rays"));
+    assert!(outcome.stderr.contains(&camera) && outcome.stderr.contains(&background), "{}", outcome.stderr);
+    if cfg!(target_os = "linux") {
+        assert!(number(&report, "memory") > 1e6, "a program has at least its code in memory");
+    }
     assert!(number(&report, "rendering") > 0.0 && number(&report, "loading") > 0.0);
 }
 
@@ -150,6 +155,45 @@ fn a_bench_measures_scenes_with_references() {
     assert!(markdown.lines().nth(2).expect("a row").starts_with("| scene | vitrum | "), "{markdown}");
     place.write("wrong.jsonl", "{\"scene\": 1}\n");
     place.refuse(&["page", "wrong.jsonl"], 2, &["wrong.jsonl:1:", "vitrum bench"]);
+}
+
+/// Costs that follow a law are told by its exponent: seconds 2e-6 n^1.5, 3 rays each, 40 bytes each, half of two threads idle.
+#[test]
+fn growth_is_told_by_its_exponent() {
+    let place = Workplace::with_scene();
+    let line = |n: u32, threads: u32| {
+        let seconds = 2e-6 * f64::from(n).powf(1.5);
+        let memory = 1_000_000 + 40 * n;
+        format!(
+            "{{\"growing\": \"things & <more>\", \"tell\": [\"rendering\", \"ray\", \"memory\"], \"number\": {n}, \"threads\": {threads}, \"loading\": 0.5, \"rendering\": {seconds}, \
+             \"processors\": {seconds}, \"memory\": {memory}, \"camera_rays\": {}}}\n",
+            3 * n
+        )
+    };
+    // Turn after turn.
+    let turn: String = [100, 10_000, 1_000_000].map(|n| line(n, 2)).concat();
+    // In one of them the machine was busy: medians don't mind.
+    let busy = turn.replace("\"rendering\": ", "\"rendering\": 9");
+    place.write("cost.jsonl", format!("{turn}{busy}{turn}"));
+    let markdown = place.succeed(&["page", "--costs", "cost.jsonl", "--markdown"]).stdout;
+    for said in [
+        "rendering: exponent 1.50",
+        "a ray: exponent 0.50",
+        "40 bytes each",
+        "| 1000000 | 0.500 | 2000 | 2000 | 50.0 |",
+    ] {
+        assert!(markdown.contains(said), "{said} in\n{markdown}");
+    }
+    place.succeed(&["page", "--costs", "cost.jsonl", "-o", "page.html"]);
+    let page = String::from_utf8(place.read("page.html")).expect("it is text");
+    assert!(
+        page.contains("<svg") && page.contains("things &amp; &lt;more&gt;") && !page.contains("<more>"),
+        "{page}"
+    );
+    assert!(!page.contains("Run time against error</h1>"));
+    place.write("wrong.jsonl", "{}\n");
+    place.refuse(&["page", "--costs", "wrong.jsonl"], 2, &["wrong.jsonl:1:", "benches/cost.py"]);
+    place.refuse(&["page"], 2, &["<RESULTS>"]);
 }
 
 /// What was measured before a program fails is kept; and names may hold anything.
