@@ -10,7 +10,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
 FOLDER = ROOT / "target" / "peers"
-# What Mitsuba compiles with. Versions up to 15 do not know the newest processors, and end the program.
+# What Mitsuba compiles with. Version 15 does not know Zen 5, and ends the program.
 LLVM = 19
 
 
