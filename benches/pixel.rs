@@ -6,7 +6,7 @@
 use crate::measure::Harness;
 use std::hint::black_box;
 use std::path::Path;
-use vitrum::io::load::{Loaded, ModelOptions, model_file, scene_text};
+use vitrum::io::load::{Loaded, ModelOptions, SceneOptions, model_file, scene_text};
 use vitrum::tracer::{Branching, Crop, Integrator, Settings, render};
 
 pub(crate) fn bench(harness: &mut Harness) {
@@ -67,6 +67,6 @@ fn paths(harness: &mut Harness) {
 /// What `vitrum render torus_knot.obj` shows: a mesh of 12 288 triangles with interpolated normals as glass.
 fn glass_mesh(harness: &mut Harness) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/gallery/meshes/torus_knot.obj");
-    let loaded = model_file(&path, &ModelOptions::default());
+    let loaded = model_file(&path, &ModelOptions::default(), SceneOptions::default());
     picture(harness, "pixel/glass knot", &loaded.expect("the mesh is part of the repository"), [48, 48], 4);
 }

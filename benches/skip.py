@@ -21,11 +21,11 @@ from pathlib import Path
 
 import gate
 
-ROWS = ["lights", "absorption", "thin-sheets", "object-tree", "solids", "outlines"]
+ROWS = ["lights", "absorption", "nested-media", "thin-sheets", "object-tree", "solids", "outlines"]
 # What carrying a feature may cost a scene without it.
 LIMIT = 0.005
 # Features that a build can be made without.
-BUILDS = ["absorption", "images", "lights", "thin sheets"]
+BUILDS = ["absorption", "nested media", "images", "lights", "thin sheets"]
 
 # A ball of a material before a sky, and pairs of materials: what has nothing to follow, and what has nearly nothing.
 BALL = """[render]

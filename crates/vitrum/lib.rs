@@ -16,14 +16,15 @@
 //! A glass sphere in front of a white sky, in memory:
 //!
 //! ```
-//! use vitrum::bxdf::{Ggx, Interface};
+//! use vitrum::bxdf::Ggx;
 //! use vitrum::geometry::{Object, Shape, shape::Sphere};
-//! use vitrum::materials::{Dielectric, Material, Media};
+//! use vitrum::materials::{Dielectric, IndexOfRefraction, Material, Media, Medium};
 //! use vitrum::math::{DVec3, Rgb, Transform};
 //! use vitrum::tracer::{Background, Camera, Integrator, Projection, Scene, SceneObject, Settings, render};
 //!
 //! let sphere = Shape::Sphere(Sphere::new(DVec3::ZERO, 1.0)?);
-//! let glass = Dielectric::new(Interface::new(1.0, 1.5)?, Ggx::smooth(), Media::CLEAR);
+//! let inside = Medium::clear(IndexOfRefraction::new(1.5)?);
+//! let glass = Dielectric::new(Media::solid(Medium::AIR, inside, 0), Ggx::smooth());
 //! let object = SceneObject {
 //!     name: "ball".to_owned(),
 //!     object: Object::new(sphere, &Transform::IDENTITY, false)?,

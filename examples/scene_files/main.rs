@@ -29,6 +29,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("bench", tumbler::OUTSIDE.0, tumbler::OUTSIDE.1, tumbler::outside()),
         ("bench", tumbler::BELOW.0, tumbler::BELOW.1, tumbler::below()),
         ("bench", tumbler::SURFACE.0, tumbler::SURFACE.1, tumbler::surface()),
+        ("bench", tumbler::WHOLE.0, tumbler::WHOLE.1, tumbler::whole()),
+        ("bench", tumbler::WATER.0, tumbler::WATER.1, tumbler::water()),
         ("bench", tumbler::ICE.0, tumbler::ICE.1, tumbler::ice()),
     ];
     for (of, name, about, mesh) in models {

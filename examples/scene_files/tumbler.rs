@@ -1,8 +1,11 @@
-//! A glass of water with ice, for the bench: each surface between two media is a mesh of its own. Metres; it stands on y = 0.01.
+//! A glass of water with ice, for the bench, modelled twice. Metres; it stands on y = 0.01.
 //!
 //! A tumbler with straight walls, all its edges rounded, filled to two thirds. Its surface is cut where the water ends: glass
 //! against air outside, over the lip and down to the water (`OUTSIDE`), glass against water below (`BELOW`), and water against
 //! air (`SURFACE`). Together they are closed, and each faces away from the denser medium, `BELOW` into the water.
+//!
+//! Or it is two solids, the glass (`WHOLE`) and the water (`WATER`), which reaches into the wall of the glass: what is seen are the same
+//! surfaces, if the glass is stronger.
 
 use std::f64::consts::PI;
 
@@ -16,6 +19,8 @@ pub(crate) const OUTSIDE: (&str, &str) =
     ("tumbler_air", "Tumbler against air: outside, lip, and inside above the water.");
 pub(crate) const BELOW: (&str, &str) = ("tumbler_water", "Tumbler against the water in it.");
 pub(crate) const SURFACE: (&str, &str) = ("water_air", "Surface of the water in the tumbler.");
+pub(crate) const WHOLE: (&str, &str) = ("tumbler", "Tumbler, all of it.");
+pub(crate) const WATER: (&str, &str) = ("water", "Water in the tumbler, 0.03 m larger than the room for it.");
 /// A cube of ice around the origin, 0.3 m wide.
 pub(crate) const ICE: (&str, &str) = ("ice", "Cube of ice, 0.3 m wide, around the origin.");
 
@@ -27,6 +32,8 @@ const TOP: f64 = 1.30;
 const OUTER: f64 = 0.55;
 const INNER: f64 = 0.47;
 const ROUNDED: f64 = 0.10;
+/// How far the water reaches into the glass.
+const REACH: f64 = 0.03;
 /// Pieces of a quarter of a circle.
 const PIECES: usize = 6;
 
@@ -35,21 +42,45 @@ type Corner = (DVec2, DVec2);
 
 /// Glass against air.
 pub(crate) fn outside() -> MeshData {
+    turned(&outside_profile())
+}
+
+fn outside_profile() -> Vec<Corner> {
     let lip = 0.5 * (OUTER - INNER);
     let mut profile = vec![on_axis(BOTTOM, -1.0)];
     profile.extend(arc(DVec2::new(OUTER - ROUNDED, BOTTOM + ROUNDED), ROUNDED, -0.5 * PI, 0.0, PIECES));
     profile.extend(arc(DVec2::new(INNER + lip, TOP), lip, 0.0, PI, 2 * PIECES));
     profile.push((DVec2::new(INNER, LEVEL), DVec2::NEG_X));
-    turned(&profile)
+    profile
 }
 
 /// Glass against water: what is inside turns towards the water.
 pub(crate) fn below() -> MeshData {
+    turned(&below_profile())
+}
+
+fn below_profile() -> Vec<Corner> {
     let mut profile = vec![(DVec2::new(INNER, LEVEL), DVec2::NEG_X)];
     let corner = arc(DVec2::new(INNER - ROUNDED, GROUND + ROUNDED), ROUNDED, 0.0, -0.5 * PI, PIECES);
     profile.extend(corner.into_iter().map(|(point, normal)| (point, -normal)));
     profile.push(on_axis(GROUND, 1.0));
+    profile
+}
+
+/// All of the glass.
+pub(crate) fn whole() -> MeshData {
+    let mut profile = outside_profile();
+    profile.extend(&below_profile()[1..]);
     turned(&profile)
+}
+
+/// All of the water, with flat faces.
+pub(crate) fn water() -> MeshData {
+    let mut profile = vec![on_axis(GROUND - REACH, -1.0)];
+    let centre = DVec2::new(INNER - ROUNDED, GROUND + ROUNDED);
+    profile.extend(arc(centre, ROUNDED + REACH, -0.5 * PI, 0.0, PIECES));
+    profile.extend([(DVec2::new(INNER + REACH, LEVEL), DVec2::X), on_axis(LEVEL, 1.0)]);
+    MeshData { normals: vec![], normal_triangles: vec![], ..turned(&profile) }
 }
 
 /// Water against air: a disk, as long as nobody stirs.

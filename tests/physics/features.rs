@@ -51,6 +51,11 @@ fn showing(feature: Feature) -> (String, Integrator) {
         Feature::AmbientLight => (with("[[light]]\ntype = \"ambient\"\nradiance = 0.5\n"), Whitted),
         Feature::Refraction => (with(&ball("type = \"dielectric\", ior = 1.5")), Path),
         Feature::Absorption => (with(&ball("type = \"dielectric\", ior = 1.5, sigma_a = 2")), Path),
+        Feature::NestedMedia => {
+            let water = ball("type = \"dielectric\", inside = \"water\"").replace("ball in front", "drop");
+            let drop = water.replace("radius = 0.6", "radius = 0.4").replace("[0.5, 0, 2]", "[0.8, 0.2, 2]");
+            (with(&format!("{}{drop}", ball("type = \"dielectric\", ior = 1.5"))), Path)
+        }
         Feature::ThinSheets => (with(&format!("{POINT}{}", ball("type = \"thin\", ior = 1.5"))), Path),
         Feature::Roughness => (with(&ball("type = \"dielectric\", ior = 1.5, roughness = 0.3")), Path),
         Feature::Mirrors => (with(&ball("type = \"conductor\", metal = \"gold\"")), Path),
@@ -130,7 +135,10 @@ fn doing_all_the_same_changes_no_bit() {
         let [skipping, doing] =
             [NoSkip::default(), NoSkip::ALL].map(|no_skip| rendered(&loaded, integrator, no_skip));
         assert_eq!(skipping.film.image(), doing.film.image(), "{}", feature.name());
-        for done in [Feature::Absorption, Feature::ObjectTree].into_iter().filter(|_| Uses::ARE_COUNTED) {
+        for done in [Feature::Absorption, Feature::NestedMedia, Feature::ObjectTree]
+            .into_iter()
+            .filter(|_| Uses::ARE_COUNTED)
+        {
             assert!(doing.stats.uses_of(done) > 0, "{} in the scene of {}", done.name(), feature.name());
         }
     }
@@ -157,6 +165,8 @@ fn each_can_be_made_to_run() {
         (BARE, Integrator::Path, Feature::Lights, NoSkip { lights: true, ..none }),
         (BARE, Integrator::Whitted, Feature::AmbientLight, NoSkip { ambient: true, ..none }),
         (BARE, Integrator::Path, Feature::Absorption, NoSkip { absorption: true, ..none }),
+        (BARE, Integrator::Path, Feature::NestedMedia, NoSkip { nested_media: true, ..none }),
+        (BARE, Integrator::Whitted, Feature::NestedMedia, NoSkip { nested_media: true, ..none }),
         (&point, Integrator::Path, Feature::ThinSheets, NoSkip { thin_sheets: true, ..none }),
         (BARE, Integrator::Path, Feature::ObjectTree, NoSkip { object_tree: true, ..none }),
     ] {

@@ -11,6 +11,7 @@ mod features;
 mod filters;
 mod invisible;
 mod mesh_sphere;
+mod nested_media;
 mod path_agreement;
 mod path_closed_forms;
 mod prism;

@@ -3,19 +3,22 @@
 use crate::estimate::assert_mean;
 use crate::stage::{camera, object, picture, unit_sphere, white};
 use std::f64::consts::PI;
-use vitrum::bxdf::{Ggx, Interface};
+use vitrum::bxdf::Ggx;
 use vitrum::geometry::shape::{Cuboid, Plane, Rectangle, Shape, Sphere};
-use vitrum::materials::{Absorption, Dielectric, Material, Media, Phong, Texture};
+use vitrum::materials::{Absorption, Dielectric, IndexOfRefraction, Material, Media, Medium, Phong, Texture};
 use vitrum::math::{DVec3, Rgb};
 use vitrum::tracer::{
     Background, Branching, Camera, Integrator, Light, Projection, Scene, SceneObject, Settings,
 };
 
 fn glass(outside: f64, inside: f64, roughness: f64, absorbed: Absorption) -> Material {
-    let interface = Interface::new(outside, inside).expect("valid indices");
-    let media = Media { outside: Absorption::NONE, inside: absorbed };
+    let medium = |n: f64, absorption: Absorption| {
+        let index = IndexOfRefraction::new(n).expect("a valid index");
+        Medium { index, absorption }
+    };
+    let media = Media::new(medium(outside, Absorption::NONE), medium(inside, absorbed));
     let ggx = if roughness > 0.0 { Ggx::isotropic(roughness).expect("valid") } else { Ggx::smooth() };
-    Material::Dielectric(Dielectric::new(interface, ggx, media))
+    Material::Dielectric(Dielectric::new(media, ggx))
 }
 
 fn clear(n: f64) -> Material {

@@ -1,20 +1,18 @@
 //! Small scenes in memory.
 
-use vitrum::bxdf::Interface;
 use vitrum::geometry::shape::{Shape, Sphere};
 use vitrum::geometry::{Object, Side};
-use vitrum::materials::{Material, Media, Phong, Transparent};
+use vitrum::materials::{IndexOfRefraction, Material, Media, Medium, Phong, Transparent};
 use vitrum::math::{DVec3, Rgb, Transform};
 use vitrum::tracer::{Background, Camera, Projection, Scene, SceneObject, Settings, render};
 
 pub(crate) fn clear_glass(kr: f64, kt: f64, outside: f64, inside: f64) -> Material {
-    let interface = Interface::new(outside, inside).expect("valid indices");
+    let medium = |n: f64| Medium::clear(IndexOfRefraction::new(n).expect("a valid index"));
     Material::Transparent(Transparent {
         phong: Phong::NONE,
         kr: Rgb::splat(kr),
         kt: Rgb::splat(kt),
-        interface,
-        media: Media::CLEAR,
+        media: Media::new(medium(outside), medium(inside)),
     })
 }
 

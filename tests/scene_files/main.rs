@@ -33,12 +33,14 @@ fn models() -> [(&'static str, &'static str, MeshData); 3] {
 }
 
 /// Those of the bench.
-fn bench_models() -> [(&'static str, &'static str, MeshData); 5] {
+fn bench_models() -> [(&'static str, &'static str, MeshData); 7] {
     [
         (knot::FINE, knot::ABOUT_FINE, knot::fine_mesh()),
         (tumbler::OUTSIDE.0, tumbler::OUTSIDE.1, tumbler::outside()),
         (tumbler::BELOW.0, tumbler::BELOW.1, tumbler::below()),
         (tumbler::SURFACE.0, tumbler::SURFACE.1, tumbler::surface()),
+        (tumbler::WHOLE.0, tumbler::WHOLE.1, tumbler::whole()),
+        (tumbler::WATER.0, tumbler::WATER.1, tumbler::water()),
         (tumbler::ICE.0, tumbler::ICE.1, tumbler::ice()),
     ]
 }
@@ -112,6 +114,16 @@ fn the_tumbler_is_closed_by_its_water() {
     let expected = 0.9993 * (wall - fillet * (0.55 - 0.022) + fillet * (0.47 - 0.022));
     let volume = signed_volume(&whole);
     assert!((volume / expected - 1.0).abs() < 3e-3, "{volume}, expected {expected}");
+    let solid = health(&tumbler::whole());
+    assert!(solid.is_closed() && (solid.volume().unwrap() / volume - 1.0).abs() < 1e-12, "{solid}");
+    // The water fills a cylinder, all but its rounded edge, and as much of the glass as it reaches into.
+    let body = health(&tumbler::water());
+    let fillet = (1.0 - PI / 4.0) * 0.13 * 0.13 * 2.0 * PI * (0.5 - 0.029);
+    let expected = 0.9993 * (disk(0.5) * (0.85 - 0.1) - fillet);
+    assert!(
+        body.is_closed() && (body.volume().unwrap() / expected - 1.0).abs() < 3e-3,
+        "{body}, expected {expected}"
+    );
     let ice = health(&tumbler::ice());
     assert!(ice.is_closed() && (ice.volume().unwrap() / 0.027 - 1.0).abs() < 1e-9, "{ice}");
 }

@@ -48,6 +48,8 @@ pub(crate) enum Command {
     Render(Render),
     /// Say what is in a scene or model, what is wrong with it, and what rendering it needs
     Inspect(Inspect),
+    /// Tell the ray tree through a pixel: what each ray meets, in which medium, and what becomes of it
+    Explain(Explain),
     /// Say how far a picture is from its reference
     Compare(Compare),
     /// Measure run time against error on scenes with references
@@ -86,7 +88,7 @@ pub(crate) struct Render {
     #[arg(long)]
     pub(crate) checkpoint: bool,
 
-    /// What an .exr is to hold beside radiance: the standard error of each pixel, the number of its samples
+    /// What an .exr is to hold beside radiance, by comma: errors and numbers of samples, and what is seen in each pixel
     #[arg(long, value_enum, value_name = "C", value_delimiter = ',')]
     pub(crate) channels: Vec<ChannelChoice>,
 
@@ -168,6 +170,31 @@ pub(crate) struct Render {
 pub(crate) struct Inspect {
     /// Scene (.toml) or model (.obj); the built-in scene without
     pub(crate) scene: Option<PathBuf>,
+
+    /// Take environments with texels that are no radiance, as `render` does
+    #[arg(long)]
+    pub(crate) repair: bool,
+
+    #[command(flatten)]
+    pub(crate) model: Model,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Explain {
+    /// Scene (.toml) or model (.obj); the built-in scene without
+    pub(crate) scene: Option<PathBuf>,
+
+    /// Column and row of the pixel, 0,0 the upper left one; the ray goes through its middle
+    #[arg(long, value_name = "X,Y", value_parser = pixel)]
+    pub(crate) pixel: [u32; 2],
+
+    /// Width and height of the picture, in place of the scene's
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub(crate) size: Option<[u32; 2]>,
+
+    /// So many rays are told at most
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = whole::<1, 100_000>, allow_negative_numbers = true)]
+    pub(crate) rays: u32,
 
     /// Take environments with texels that are no radiance, as `render` does
     #[arg(long)]
@@ -279,6 +306,24 @@ pub(crate) enum ChannelChoice {
     Error,
     /// Samples taken: samples.Y
     Samples,
+    /// The object in the middle of the pixel: object.id, its place in the metadata `objects` from 1; 0 for none
+    Object,
+    /// Its material, by number from 1: material.id
+    Material,
+    /// Distance from the camera, metres: depth.Z
+    Depth,
+    /// Normal of the first surface, towards the camera: normal.X, normal.Y, normal.Z
+    Normal,
+    /// Share of light that it gives back: albedo.R, albedo.G, albedo.B
+    Albedo,
+    /// Normal of the first surface behind glass and mirrors: behind.normal.X, Y, Z
+    NormalBehind,
+    /// What that gives back: behind.albedo.R, G, B
+    AlbedoBehind,
+    /// The most solids of glass inside each other on the way there: media.Y
+    Media,
+    /// How often rays left glass that they had not entered, or media did not fit: unmatched.Y
+    Unmatched,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -289,6 +334,8 @@ pub(crate) enum NoSkipChoice {
     Ambient,
     /// What clear media absorb
     Absorption,
+    /// Counting the solids that a ray is in
+    NestedMedia,
     /// Looking for sheets on the way to lights
     ThinSheets,
     /// A tree over few objects
@@ -309,6 +356,7 @@ pub(crate) fn no_skip(asked: Option<&[NoSkipChoice]>) -> NoSkip {
             NoSkipChoice::Lights => found.lights = true,
             NoSkipChoice::Ambient => found.ambient = true,
             NoSkipChoice::Absorption => found.absorption = true,
+            NoSkipChoice::NestedMedia => found.nested_media = true,
             NoSkipChoice::ThinSheets => found.thin_sheets = true,
             NoSkipChoice::ObjectTree => found.object_tree = true,
             NoSkipChoice::Solids => found.solids = true,
@@ -470,6 +518,12 @@ fn size(text: &str) -> Result<[u32; 2], String> {
     text.split_once(['x', 'X'])
         .and_then(|(w, h)| Some([number(w)?, number(h)?]))
         .ok_or_else(|| "expected width and height in pixels, 1 to 65536 each, such as 640x480".to_owned())
+}
+
+fn pixel(text: &str) -> Result<[u32; 2], String> {
+    let numbers =
+        text.split_once(',').and_then(|(x, y)| Some([x.trim().parse().ok()?, y.trim().parse().ok()?]));
+    numbers.ok_or_else(|| "expected a column and a row, such as 320,240".to_owned())
 }
 
 fn crop(text: &str) -> Result<Crop, String> {

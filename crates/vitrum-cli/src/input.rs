@@ -20,7 +20,7 @@ pub(crate) fn load(
         (Some(_), Some("obj")) if model.has_idle_index() => Err(Failure::usage(
             "--ior is the index of refraction of --material glass; leave it out with matte and file",
         )),
-        (Some(path), Some("obj")) => Ok(load::model_file(path, &model.options(size))?),
+        (Some(path), Some("obj")) => Ok(load::model_file(path, &model.options(size), options)?),
         // Scenes may come through a pipe, whose name has no extension.
         (Some(path), Some(other)) if other != "toml" => Err(Failure::usage(format!(
             "{}: found the extension .{other}, expected .toml (a scene) or .obj (a model); export a model of another format \

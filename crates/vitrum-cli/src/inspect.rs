@@ -8,14 +8,16 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::process::ExitCode;
 use vitrum_io::load::{Loaded, MeshReport, SceneOptions};
-use vitrum_materials::{Material, Phong, Texture};
+use vitrum_materials::{Boundary, Material, Media, Phong, Texture};
 use vitrum_math::{DVec3, Rgb};
-use vitrum_tracer::{Background, Branching, Falloff, Feature, Integrator, Light, Plan, Projection, Settings};
+use vitrum_tracer::{
+    Background, Branching, Falloff, Feature, Integrator, Light, Plan, Projection, Scene, Settings, medium_at,
+};
 
 pub(crate) fn run(arguments: &Inspect) -> Result<ExitCode, Failure> {
     let loaded = input::load(
         arguments.scene.as_deref(),
-        SceneOptions { repair: arguments.repair },
+        SceneOptions { repair: arguments.repair, examine: true },
         &arguments.model,
         None,
     )?;
@@ -45,18 +47,24 @@ fn describe(out: &mut String, loaded: &Loaded) -> std::fmt::Result {
         ),
         Projection::Orthographic { height } => format!("orthographic, {height} m high"),
     };
-    writeln!(out, "camera     at {}, {projection}", point(scene.camera.position()))?;
+    let within_what = within(scene, scene.camera.position());
+    writeln!(out, "camera     at {}, {projection}{within_what}", point(scene.camera.position()))?;
     let bounds = scene.aggregate().bounds();
     if !bounds.is_empty() {
         writeln!(out, "bounds     {} to {}", point(bounds.min), point(bounds.max))?;
     }
-    let media: Vec<String> = loaded.media.iter().map(|(name, ior)| format!("{name} {ior}")).collect();
-    writeln!(out, "media      {}; around everything: {}", media.join(", "), scene.medium.value())?;
+    let media: Vec<String> =
+        loaded.media.iter().map(|(name, medium)| format!("{name} {}", medium.index.value())).collect();
+    writeln!(out, "media      {}; around everything: {}", media.join(", "), scene.medium.index.value())?;
     if scene.ambient != Rgb::ZERO {
         writeln!(out, "light      ambient, radiance {}", colour(scene.ambient))?;
     }
     for light in &scene.lights {
-        writeln!(out, "light      {}", describe_light(light))?;
+        let around = match light {
+            Light::Point { position, .. } | Light::Spot { position, .. } => within(scene, *position),
+            Light::Directional { .. } => String::new(),
+        };
+        writeln!(out, "light      {}{around}", describe_light(light))?;
     }
     if let Background::Environment(map) = &scene.background {
         let [width, height] = map.size();
@@ -73,11 +81,19 @@ fn describe(out: &mut String, loaded: &Loaded) -> std::fmt::Result {
     }
     writeln!(out)?;
     objects(out, loaded)?;
+    overlaps(out, scene)?;
     plan(out, &Plan::new(scene, settings), loaded, settings.integrator)?;
     if !loaded.warnings.is_empty() {
         write!(out, "\n{}", loaded.warnings)?;
     }
     Ok(())
+}
+
+/// The solids of glass that a point lies in.
+fn within(scene: &Scene, at: DVec3) -> String {
+    let (_, solids) = medium_at(scene, at);
+    let names: Vec<String> = solids.iter().map(|id| format!("`{}`", scene.names()[*id as usize])).collect();
+    if names.is_empty() { String::new() } else { format!(", inside {}", names.join(", ")) }
 }
 
 /// How light is followed.
@@ -142,6 +158,53 @@ fn describe_mesh(out: &mut String, mesh: &MeshReport) -> std::fmt::Result {
     Ok(())
 }
 
+/// So many pairs of solids are looked at: more than a person reads.
+const MOST_PAIRS: usize = 64;
+
+/// Gaps are looked for up to this share of the smaller solid.
+const REACH: f64 = 2e-3;
+
+/// The solids that may reach into each other, and how near their surfaces come to each other.
+fn overlaps(out: &mut String, scene: &Scene) -> std::fmt::Result {
+    let pairs = scene.overlapping_solids();
+    if pairs.is_empty() {
+        return Ok(());
+    }
+    writeln!(
+        out,
+        "\n{} may overlap",
+        if pairs.len() == 1 {
+            "1 pair of solids".to_owned()
+        } else {
+            format!("{} pairs of solids", pairs.len())
+        }
+    )?;
+    let aggregate = scene.aggregate();
+    let size = |id: u32| aggregate.objects()[id as usize].bounds().map_or(0.0, |b| b.extent().max_element());
+    for (a, b) in pairs.iter().copied().take(MOST_PAIRS) {
+        let found = aggregate.nearness(a, b, REACH * size(a).min(size(b)));
+        let share = |points: u32| 100.0 * f64::from(points) / f64::from(found.points.max(1));
+        write!(out, "  `{}` and `{}`", scene.names()[a as usize], scene.names()[b as usize])?;
+        if found.flush > 0 {
+            write!(out, ", flush on {:.1} % of the first, where both walls are one", share(found.flush))?;
+        }
+        if let Some((width, at)) = found.narrowest {
+            write!(
+                out,
+                ", a gap on {:.1} % of the first, down to {width:.3e} m at {}: light is totally reflected there; let one reach into the \
+                 other, and give what is to be seen the higher priority",
+                share(found.gaps),
+                point(at)
+            )?;
+        }
+        writeln!(out)?;
+    }
+    if pairs.len() > MOST_PAIRS {
+        writeln!(out, "  ... and {} more", pairs.len() - MOST_PAIRS)?;
+    }
+    Ok(())
+}
+
 /// A line for each feature: used or skipped.
 fn plan(out: &mut String, plan: &Plan, loaded: &Loaded, integrator: Integrator) -> std::fmt::Result {
     writeln!(out, "\nplan")?;
@@ -163,6 +226,9 @@ fn plan(out: &mut String, plan: &Plan, loaded: &Loaded, integrator: Integrator) 
             Feature::AmbientLight => "added at each hit".to_owned(),
             Feature::Refraction => "trees of rays".to_owned(),
             Feature::Absorption => "a factor for each segment".to_owned(),
+            Feature::NestedMedia => {
+                format!("solids overlap: rays keep count of up to {}", plan.nested_media)
+            }
             Feature::ThinSheets => "light that is asked for goes through".to_owned(),
             Feature::Roughness => "scattered rays".to_owned(),
             Feature::Mirrors => "reflected rays".to_owned(),
@@ -214,15 +280,18 @@ fn describe_material(material: &Material) -> String {
         Material::Matte(_) | Material::Phong(_) => format!("{}{phong}", material.name()),
         Material::Reflective { kr, .. } => format!("reflective kr {}{phong}", colour(*kr)),
         Material::Transparent(t) => {
-            format!("transparent ior {} kr {} kt {}{phong}", t.interface.eta(), colour(t.kr), colour(t.kt))
+            let (eta, priority) = (t.media.interface().eta(), priority(&t.media));
+            format!("transparent ior {eta} kr {} kt {}{priority}{phong}", colour(t.kr), colour(t.kt))
         }
         Material::Dielectric(glass) => {
             let roughness = if glass.is_smooth() { "" } else { ", rough" };
-            let absorbs = match glass.media.inside {
+            let media = glass.media();
+            let absorbs = match media.inside.absorption {
                 clear if clear.is_none() => String::new(),
                 inside => format!(", sigma_a {} per metre inside", colour(inside.sigma_a())),
             };
-            format!("dielectric, index {} inside over outside{roughness}{absorbs}", glass.interface().eta())
+            let (eta, priority) = (media.interface().eta(), priority(media));
+            format!("dielectric, index {eta} inside over outside{roughness}{absorbs}{priority}")
         }
         Material::Thin(sheet) => {
             format!(
@@ -240,6 +309,15 @@ fn describe_material(material: &Material) -> String {
             format!("conductor n {} k {}{roughness}", colour(metal.index.n()), colour(metal.index.k()))
         }
         Material::Emissive { radiance } => format!("emissive {}", texture(radiance)),
+    }
+}
+
+/// What is said of a solid that has one.
+fn priority(media: &Media) -> String {
+    match media.boundary {
+        Boundary::Solid { priority: 0 } => String::new(),
+        Boundary::Solid { priority } => format!(", priority {priority}"),
+        Boundary::Interface => ", an interface".to_owned(),
     }
 }
 

@@ -9,6 +9,7 @@ mod compare;
 #[cfg(test)]
 mod docs;
 mod errors;
+mod explain;
 mod failure;
 mod input;
 mod inspect;
@@ -45,6 +46,7 @@ fn run(command: &Command) -> Result<ExitCode, Failure> {
     match command {
         Command::Render(arguments) => render::run(arguments),
         Command::Inspect(arguments) => inspect::run(arguments),
+        Command::Explain(arguments) => explain::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
         Command::Bench(arguments) => bench::run(arguments),
         Command::Page(arguments) => page::run(arguments),

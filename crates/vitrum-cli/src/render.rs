@@ -15,10 +15,10 @@ use std::time::Instant;
 use vitrum_io::image::{self, Channel, ImageView};
 use vitrum_io::load::{Loaded, SceneOptions};
 use vitrum_materials::Material;
-use vitrum_math::{Rgb, Sequence};
+use vitrum_math::{DVec3, Rgb, Sequence};
 use vitrum_tracer::{
-    Branching, Ended, Filter, Integrator, LightSampling, RenderError, Rendering, Settings, ShadowMode,
-    Target, on_threads, render, resume,
+    Branching, Ended, Filter, Integrator, LightSampling, RenderError, Rendering, Scene, Seen, Settings,
+    ShadowMode, Target, on_threads, render, resume, seen,
 };
 
 /// The clock of the program: the libraries have none.
@@ -40,7 +40,7 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
         vitrum_io::check_text_writable(report)?;
     }
     let interrupt = Interrupt::listen()?;
-    let options = SceneOptions { repair: arguments.repair };
+    let options = SceneOptions { repair: arguments.repair, ..SceneOptions::default() };
     let load = || input::load(arguments.scene.as_deref(), options, &arguments.model, arguments.size);
     let loaded = on_threads(arguments.threads as usize, load)??;
     if !arguments.quiet {
@@ -98,9 +98,13 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
     let kept = if is_kept { store.write(&rendering.film) } else { Ok(()) };
     let pixels = rendering.film.image();
     let view = ImageView { width: area.width, height: area.height, pixels: &pixels };
-    let channels = channels(&rendering, &arguments.channels);
-    let metadata = metadata(&settings, rendering.film.samples());
-    if channels.len() < arguments.channels.len() && !arguments.quiet {
+    let channels = channels(&rendering, &loaded.scene, &settings, &arguments.channels)?;
+    let mut metadata = metadata(&settings, rendering.film.samples());
+    if arguments.channels.contains(&ChannelChoice::Object) {
+        metadata.push(("objects".to_owned(), loaded.scene.names().join("\n")));
+    }
+    let knows_errors = channels.iter().any(|channel| channel.name.starts_with("error."));
+    if arguments.channels.contains(&ChannelChoice::Error) && !knows_errors && !arguments.quiet {
         say("warning: there are too few samples to tell errors; the channels of the error are left out\n");
     }
     if let Err(failure) = image::write(&arguments.output, view, &channels, &metadata, loaded.display) {
@@ -135,7 +139,12 @@ pub(crate) fn run(arguments: &Render) -> Result<ExitCode, Failure> {
 }
 
 /// What an .exr holds beside radiance. A render that was stopped early knows no errors.
-fn channels(rendering: &Rendering, asked: &[ChannelChoice]) -> Vec<Channel> {
+fn channels(
+    rendering: &Rendering,
+    scene: &Scene,
+    settings: &Settings,
+    asked: &[ChannelChoice],
+) -> Result<Vec<Channel>, Failure> {
     let film = &rendering.film;
     let errors = film.standard_error().filter(|_| asked.contains(&ChannelChoice::Error)).unwrap_or_default();
     let mut channels = Vec::new();
@@ -149,7 +158,40 @@ fn channels(rendering: &Rendering, asked: &[ChannelChoice]) -> Vec<Channel> {
         let values = film.sample_counts().into_iter().map(|n| n as f32).collect();
         channels.push(Channel { name: "samples.Y".to_owned(), values });
     }
-    channels
+    if asked.iter().any(|choice| !matches!(choice, ChannelChoice::Error | ChannelChoice::Samples)) {
+        let seen = seen(scene, settings).map_err(|error| explain(error, settings))?;
+        let once = asked.iter().enumerate().filter(|(i, choice)| !asked[..*i].contains(choice));
+        for (_, choice) in once {
+            add_seen(*choice, &seen, &mut channels);
+        }
+    }
+    Ok(channels)
+}
+
+/// Adds the channels of a choice about what is seen.
+fn add_seen(choice: ChannelChoice, seen: &[Seen], channels: &mut Vec<Channel>) {
+    let mut add = |name: String, value: &dyn Fn(&Seen) -> f64| {
+        channels.push(Channel { name, values: seen.iter().map(|s| value(s) as f32).collect() });
+    };
+    let mut three = |name: &str, axes: [&str; 3], value: &dyn Fn(&Seen) -> DVec3| {
+        for (axis, letter) in axes.into_iter().enumerate() {
+            add(format!("{name}.{letter}"), &|s| value(s)[axis]);
+        }
+    };
+    const XYZ: [&str; 3] = ["X", "Y", "Z"];
+    const RGB: [&str; 3] = ["R", "G", "B"];
+    match choice {
+        ChannelChoice::Error | ChannelChoice::Samples => {}
+        ChannelChoice::Normal => three("normal", XYZ, &|s| s.normal),
+        ChannelChoice::NormalBehind => three("behind.normal", XYZ, &|s| s.normal_behind),
+        ChannelChoice::Albedo => three("albedo", RGB, &|s| s.albedo),
+        ChannelChoice::AlbedoBehind => three("behind.albedo", RGB, &|s| s.albedo_behind),
+        ChannelChoice::Object => add("object.id".to_owned(), &|s| f64::from(s.object)),
+        ChannelChoice::Material => add("material.id".to_owned(), &|s| f64::from(s.material)),
+        ChannelChoice::Depth => add("depth.Z".to_owned(), &|s| s.depth),
+        ChannelChoice::Media => add("media.Y".to_owned(), &|s| f64::from(s.media)),
+        ChannelChoice::Unmatched => add("unmatched.Y".to_owned(), &|s| s.unmatched),
+    }
 }
 
 /// Two rounds: their difference is what tells a standard error.

@@ -34,6 +34,11 @@ pub(crate) struct Report {
     pub(crate) deepest: u32,
     /// Rays that guards against endless paths met.
     pub(crate) guarded: u64,
+    /// Surfaces of solids that were passed straight, and those that were crossed together with another.
+    pub(crate) passed: u64,
+    pub(crate) merged: u64,
+    /// Solids that were left without having been entered.
+    pub(crate) unmatched_exits: u64,
     /// Samples that were not finite or negative, and are left out.
     pub(crate) dropped: u64,
 }
@@ -57,6 +62,9 @@ impl Report {
             pilot_rays: stats.pilot_rays,
             deepest: stats.deepest,
             guarded: stats.guarded,
+            passed: stats.passed,
+            merged: stats.merged,
+            unmatched_exits: stats.unmatched_exits,
             dropped: stats.dropped,
         }
     }

@@ -116,6 +116,26 @@ pub(crate) fn summary(rendering: &Rendering, is_limited: bool, phases: &Phases, 
             format!("{} rays of very long paths or large trees went on by roulette", stats.guarded),
         );
     }
+    if stats.passed > 0 {
+        line(
+            "overlaps",
+            format!(
+                "{} surfaces were passed inside of stronger solids, {} crossed together with one in the same place",
+                stats.passed, stats.merged
+            ),
+        );
+    }
+    let lost = stats.unmatched_exits + stats.overfull + stats.unending;
+    if lost > 0 {
+        line(
+            "warning",
+            format!(
+                "{lost} times a ray lost count of the solids that it is in ({} left one that it had not entered); `vitrum explain` shows a \
+                 pixel, `vitrum inspect` the meshes",
+                stats.unmatched_exits
+            ),
+        );
+    }
     if stats.geometry.neighbours_ignored > 0 || stats.normal_fallbacks > 0 {
         line(
             "rare",

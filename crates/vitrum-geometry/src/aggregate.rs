@@ -11,7 +11,7 @@ use crate::wide::{
 };
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use vitrum_math::{Bounds, DVec2, DVec3};
+use vitrum_math::{Bounds, DVec2, DVec3, Ray, unit};
 
 /// Bounded objects are tried one by one while their costs sum to at most this; more stand in a tree. Measured: spheres, of
 /// which four are tried at a time, are worth sweeping up to about 24, others up to 2, with spheres beside them (`benches/README.md`).
@@ -80,6 +80,11 @@ impl Default for Nearest {
 }
 
 impl Nearest {
+    /// Nothing is of interest but what lies nearer than `limit`.
+    fn within(limit: f64) -> Self {
+        Self(Hit { t: limit, ..Self::default().0 })
+    }
+
     /// Beyond this distance nothing is of interest.
     #[inline]
     pub(crate) fn limit(&self) -> f64 {
@@ -89,7 +94,7 @@ impl Nearest {
     /// What was found.
     #[inline]
     pub(crate) fn found(&self) -> Option<Hit> {
-        (self.0.t < f64::INFINITY).then_some(self.0)
+        (self.0.object != u32::MAX).then_some(self.0)
     }
 
     /// Takes `hit`, which is finite, if it comes before what stands here; true if it did.
@@ -147,7 +152,7 @@ impl Task for Closest<'_> {
             Counters::count(&mut counters.inner_searches);
             all.objects[solid as usize].closest(query, solid, nearest, counters);
             // Unless the ray got out through a gap, the way to the hit lies within the bounds of the solid.
-            if nearest.limit() < f64::INFINITY {
+            if nearest.found().is_some() {
                 if !others.is_empty() {
                     offer_others(others, &all.objects, query, nearest, counters);
                 }
@@ -388,6 +393,51 @@ impl Aggregate {
         nearest.found()
     }
 
+    /// What the ray hits first, at most `limit` metres away.
+    pub fn closest_within(&self, query: &Query, limit: f64, counters: &mut Counters) -> Option<Hit> {
+        let mut nearest = Nearest::within(limit);
+        self.isa.run(&mut Closest { all: self, query, nearest: &mut nearest, counters });
+        nearest.found()
+    }
+
+    /// What of one object the ray hits first, at most `limit` metres away.
+    pub fn closest_of(&self, object: u32, query: &Query, limit: f64, counters: &mut Counters) -> Option<Hit> {
+        let mut nearest = Nearest::within(limit);
+        self.objects[object as usize].closest(query, object, &mut nearest, counters);
+        nearest.found()
+    }
+
+    /// True when the ray hits anything of one object nearer than `limit` metres.
+    pub fn meets(&self, object: u32, query: &Query, limit: f64, counters: &mut Counters) -> bool {
+        self.objects[object as usize].any(query, object, limit, counters)
+    }
+
+    /// How often the surface of a closed object winds around a point: 1 inside and 0 outside, more where the surface overlaps itself.
+    /// In closed form for spheres. For others, rays in three directions count what they leave against what they enter; where they
+    /// do not agree, which takes a ray along a surface, two outvote the third.
+    pub fn winding(&self, object: u32, point: DVec3) -> i32 {
+        // Off the axes, along which models have edges and seams.
+        const DIRECTIONS: [DVec3; 3] =
+            [DVec3::new(0.91, 0.17, -0.29), DVec3::new(-0.37, 0.89, 0.23), DVec3::new(0.19, -0.31, 0.93)];
+        let whole = &self.objects[object as usize];
+        if let Some(sphere) = whole.as_sphere() {
+            let inside = (point - sphere.centre()).length() < sphere.radius();
+            return i32::from(inside);
+        }
+        let mut counters = Counters::default();
+        let mut counts = DIRECTIONS.map(|direction| {
+            let mut query = Query::new(Ray::new(point, unit(direction)));
+            let mut count = 0;
+            while let Some(hit) = self.closest_of(object, &query, f64::INFINITY, &mut counters) {
+                count += if whole.interaction(&query, &hit, &mut counters).front { -1 } else { 1 };
+                query.pass(hit.t, object, hit.face);
+            }
+            count
+        });
+        counts.sort_unstable();
+        counts[1]
+    }
+
     /// True when anything is hit nearer than `limit` metres.
     #[inline]
     pub fn occluded(&self, query: &Query, limit: f64, counters: &mut Counters) -> bool {
@@ -419,7 +469,7 @@ mod tests {
     use super::*;
     use crate::interaction::Side;
     use crate::shape::{Shape, Sphere};
-    use vitrum_math::{Ray, Transform};
+    use vitrum_math::Transform;
 
     fn object(shape: Shape) -> Object {
         Object::new(shape, &Transform::IDENTITY, false).expect("valid")

@@ -106,7 +106,7 @@ impl Object {
     }
 
     /// False when an infinite object certainly stays outside of the bounds.
-    pub(crate) fn may_cross(&self, bounds: &Bounds) -> bool {
+    pub fn may_cross(&self, bounds: &Bounds) -> bool {
         match &self.shape {
             Shape::Plane(plane) => {
                 let sides = bounds.corners().map(|corner| plane.normal().dot(corner - plane.point()));

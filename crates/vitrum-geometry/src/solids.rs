@@ -7,6 +7,7 @@
 
 use crate::departure::Query;
 use crate::object::Object;
+use crate::overlap::touching;
 use vitrum_math::Bounds;
 
 /// Longer lists are not kept: a tree finds its way among more objects sooner.
@@ -40,25 +41,11 @@ impl Solids {
             (*id, b.padded(WIDENED.0 * b.extent().max_element() + WIDENED.1 * farthest))
         };
         let bounded: Vec<(u32, Bounds)> = bounded.iter().map(widened).collect();
-        // Sweep along the longest axis of the scene: bounds that overlap there are compared in full.
-        let all = bounded.iter().fold(Bounds::EMPTY, |all, (_, b)| all.union(*b));
-        let extent = all.extent();
-        let axis = (0..3).max_by(|&a, &b| extent[a].total_cmp(&extent[b])).unwrap_or(0);
-        let mut order: Vec<usize> = (0..bounded.len()).collect();
-        order.sort_by(|&a, &b| bounded[a].1.min[axis].total_cmp(&bounded[b].1.min[axis]));
-        for (rank, &a) in order.iter().enumerate() {
-            let (id, bounds) = bounded[a];
-            for &b in &order[rank + 1..] {
-                let (other, others) = bounded[b];
-                if others.min[axis] > bounds.max[axis] {
-                    break;
-                }
-                if bounds.touches(&others) {
-                    meets(id, other);
-                    meets(other, id);
-                }
-            }
-        }
+        let boxes: Vec<Bounds> = bounded.iter().map(|(_, bounds)| *bounds).collect();
+        touching(&boxes, |a, b| {
+            meets(bounded[a].0, bounded[b].0);
+            meets(bounded[b].0, bounded[a].0);
+        });
         for (other, infinite) in (0u32..).zip(objects).filter(|(_, o)| o.bounds().is_none()) {
             for (id, _) in bounded.iter().filter(|(_, bounds)| infinite.may_cross(bounds)) {
                 meets(*id, other);

@@ -166,14 +166,16 @@ fn texels_that_are_no_radiance_are_refused_or_replaced() {
     ] {
         assert!(said.contains(part), "{part} is missing in:\n{said}");
     }
-    let loaded = load::scene_file(&path, SceneOptions { repair: true }).expect("repaired");
+    let loaded =
+        load::scene_file(&path, SceneOptions { repair: true, ..SceneOptions::default() }).expect("repaired");
     let warned = loaded.warnings.to_string();
     assert!(warned.contains("2 texels were no radiance"), "{warned}");
     let Background::Environment(map) = &loaded.scene.background else { panic!("a picture was asked for") };
     assert_eq!(map.brightest(), 7.0);
     // Nothing to repair, nothing to say.
     write(folder.path(), &[[1.0; 3]; 4], 2);
-    let loaded = load::scene_file(&path, SceneOptions { repair: true }).expect("good");
+    let loaded =
+        load::scene_file(&path, SceneOptions { repair: true, ..SceneOptions::default() }).expect("good");
     assert!(loaded.warnings.is_empty());
 }
 

@@ -157,7 +157,7 @@ fn a_model_shows_the_map_of_its_material() {
     );
     assert_eq!(pixels(&missing)[5], [0.5, 1.0, 1.0]);
     let options = ModelOptions { material: ModelMaterial::File, ..ModelOptions::default() };
-    assert!(load::model_file(&place.path("m.obj"), &options).is_ok());
+    assert!(load::model_file(&place.path("m.obj"), &options, load::SceneOptions::default()).is_ok());
 }
 
 #[test]

@@ -15,12 +15,13 @@ const FOLDERS: [(&str, &str); 3] = [("obj", "obj"), ("bad-mesh", "bad-mesh"), ("
 /// Loads and renders a model. What is wrong with the outcome, if anything.
 fn show(path: &Path, material: ModelMaterial, refused: Option<&str>) -> Result<(), String> {
     let options = ModelOptions { material, ..ModelOptions::default() };
-    let Loaded { scene, settings, meshes, .. } = match (load::model_file(path, &options), refused) {
-        (Ok(loaded), None) => loaded,
-        (Ok(_), Some(phrase)) => return Err(format!("loads, expected `{phrase}`")),
-        (Err(error), Some(phrase)) if error.to_string().contains(phrase) => return Ok(()),
-        (Err(error), _) => return Err(format!("is refused: {error}")),
-    };
+    let Loaded { scene, settings, meshes, .. } =
+        match (load::model_file(path, &options, load::SceneOptions::default()), refused) {
+            (Ok(loaded), None) => loaded,
+            (Ok(_), Some(phrase)) => return Err(format!("loads, expected `{phrase}`")),
+            (Err(error), Some(phrase)) if error.to_string().contains(phrase) => return Ok(()),
+            (Err(error), _) => return Err(format!("is refused: {error}")),
+        };
     if meshes.iter().any(|mesh| !mesh.closed && mesh.findings.is_empty()) {
         return Err("is not closed, and nothing says why".to_owned());
     }

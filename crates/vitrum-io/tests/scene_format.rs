@@ -9,6 +9,7 @@ use proptest::prelude::*;
 use vitrum_io::diagnostic::{Diagnostics, Severity, Span};
 use vitrum_io::scene::schema::{self, Default as KeyDefault, Kind, TABLES};
 use vitrum_io::scene::{self, *};
+use vitrum_materials::NamedMedium;
 use vitrum_math::{DVec3, Rgb};
 
 const CAMERA: &str = "[camera]\ntype = \"pinhole\"\nposition = [0, 1, 5]\ntarget = [0, 0, 0]\nfov = 40\n";
@@ -210,13 +211,13 @@ fn matter_and_light_arrive() {
     assert_eq!(scene.lights[1].kind, lamp);
     let Pattern::Checker { axes, size, .. } = scene.textures[0].pattern else { panic!("not a checker") };
     assert_eq!((axes, size), ([true; 3], 0.5));
-    let Model::Transparent { phong, kr, kt, ior, outside } = &scene.materials[0].model else {
+    let Model::Transparent { phong, kr, kt, ior, around } = &scene.materials[0].model else {
         panic!("{:?}", scene.materials[0])
     };
     assert_eq!((*kr, *kt, *ior), (Rgb::splat(0.1), Rgb::splat(0.9), 0.75));
     assert_eq!((phong.ka, phong.kd, phong.ks, phong.exponent), (0.0, 0.0, 0.0, 2000.0));
     assert!(matches!(&phong.color, ColourOrTexture::Texture(name) if name.text == "t"));
-    assert_eq!(outside.as_ref().map(|name| name.text.as_str()), Some("water"));
+    assert!(matches!(around, Around::Medium(name) if name.text == "water"));
 }
 
 #[test]
@@ -362,4 +363,40 @@ fn an_open_bracket_at_the_end_is_told_within_the_text() {
             assert!(place.span.end <= text.len(), "{text:?}: {:?}", place.span);
         }
     }
+}
+
+#[test]
+fn the_page_lists_the_media_that_have_names() {
+    let page = fs::read_to_string(page_path()).expect("the page is there");
+    let (_, list) = page.split_once("Media that can be named without a table:").expect("the page lists them");
+    let (list, _) = list.split_once("<!-- schema").expect("the table follows");
+    for NamedMedium { name, medium } in NamedMedium::ALL {
+        let (_, after) =
+            list.split_once(&format!("`{name}`")).unwrap_or_else(|| panic!("{name} is not listed"));
+        let index = medium.index.value().to_string();
+        assert!(
+            after.split('(').nth(1).is_some_and(|index_after| index_after.starts_with(&index)),
+            "{name}: {index}"
+        );
+        let sigma_a = medium.absorption.sigma_a().to_array();
+        let told = sigma_a.iter().all(|s| *s == 0.0 || list.contains(&s.to_string()));
+        assert!(told, "{name}: {sigma_a:?}");
+    }
+}
+
+#[test]
+fn media_with_names_are_there_and_can_be_replaced() {
+    let media = |text: &str| scene_of(&format!("{CAMERA}{text}"));
+    let of = |name: &str| {
+        format!(
+            "[[object]]\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = {{ type = \"dielectric\", inside = \"{name}\" }}\n"
+        )
+    };
+    for medium in NamedMedium::ALL {
+        media(&of(medium.name));
+    }
+    assert_eq!(
+        media(&format!("[[medium]]\nname = \"water\"\nior = 1.34\n{}", of("water"))).media[0].ior,
+        1.34
+    );
 }

@@ -8,7 +8,7 @@ use vitrum_math::Rgb;
 
 /// How much of the light a medium absorbs: a coefficient per metre and channel, none negative.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Absorption(Rgb);
+pub struct Absorption(pub(crate) Rgb);
 
 /// Numbers that describe no absorption.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

@@ -2,7 +2,7 @@
 
 /// An absolute index of refraction: the speed of light in vacuum over the speed in the medium.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
-pub struct IndexOfRefraction(f64);
+pub struct IndexOfRefraction(pub(crate) f64);
 
 /// A number that is no index of refraction.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

@@ -1,7 +1,7 @@
 //! The closed family of materials.
 
 use crate::scattering::{Scattering, unless_zero};
-use crate::{Absorption, ImageTexture, Place, Texture};
+use crate::{ImageTexture, Media, Medium, Place, Texture};
 use vitrum_bxdf::{
     Bxdf, Conductor, FresnelDielectric, Ggx, GlossySpecular, Interface, Lambertian, PerfectSpecular,
     PerfectTransmitter, RoughDielectric, ThinDielectric,
@@ -67,9 +67,7 @@ pub struct Transparent {
     pub kr: Rgb,
     /// Transmitted share, per channel, 0 to 1.
     pub kt: Rgb,
-    /// The medium outside (above) and inside (below).
-    pub interface: Interface<f64>,
-    /// What both absorb.
+    /// The media outside (above) and inside (below).
     pub media: Media,
 }
 
@@ -78,34 +76,21 @@ pub struct Transparent {
 pub struct Dielectric {
     /// Reflects and refracts.
     bxdf: Bxdf<f64>,
-    interface: Interface<f64>,
-    /// What the media absorb.
-    pub media: Media,
-}
-
-/// What is absorbed on either side of a surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Media {
-    /// On the side that the normal points to.
-    pub outside: Absorption,
-    /// On the other.
-    pub inside: Absorption,
-}
-
-impl Media {
-    /// Clear on both sides.
-    pub const CLEAR: Self = Self { outside: Absorption::NONE, inside: Absorption::NONE };
+    /// Whether it makes up for the energy of repeated scattering.
+    compensated: bool,
+    media: Media,
 }
 
 impl Dielectric {
-    /// A surface between the indices of `interface`, outside above, as rough as `roughness` says; `media` absorb.
-    pub fn new(interface: Interface<f64>, roughness: Ggx<f64>, media: Media) -> Self {
+    /// A surface between two media, as rough as `roughness` says.
+    pub fn new(media: Media, roughness: Ggx<f64>) -> Self {
+        let interface = *media.interface();
         let bxdf = if roughness.is_smooth() {
             Bxdf::FresnelDielectric(FresnelDielectric { interface })
         } else {
             Bxdf::RoughDielectric(RoughDielectric::new(interface, roughness))
         };
-        Self { bxdf, interface, media }
+        Self { bxdf, compensated: true, media }
     }
 
     /// The same without what makes up for the energy of repeated scattering in the roughness.
@@ -113,21 +98,42 @@ impl Dielectric {
     pub fn single_scattering(self) -> Self {
         match self.bxdf {
             Bxdf::RoughDielectric(rough) => {
-                let single = RoughDielectric::single_scattering(self.interface, *rough.roughness());
-                Self { bxdf: Bxdf::RoughDielectric(single), ..self }
+                let single = RoughDielectric::single_scattering(*self.media.interface(), *rough.roughness());
+                Self { bxdf: Bxdf::RoughDielectric(single), compensated: false, ..self }
             }
             _ => self,
         }
     }
 
-    /// The pair of indices.
-    pub fn interface(&self) -> &Interface<f64> {
-        &self.interface
+    /// The same surface with another medium outside.
+    #[must_use]
+    pub fn within(&self, outside: Medium) -> Self {
+        let media = self.media.within(outside);
+        match self.bxdf {
+            Bxdf::RoughDielectric(rough) => {
+                let same = Self::new(media, *rough.roughness());
+                if self.compensated { same } else { same.single_scattering() }
+            }
+            _ => Self::new(media, Ggx::smooth()),
+        }
+    }
+
+    /// What it divides.
+    pub fn media(&self) -> &Media {
+        &self.media
     }
 
     /// True where it has no roughness that scatters.
     pub fn is_smooth(&self) -> bool {
         self.bxdf.is_specular()
+    }
+}
+
+impl Transparent {
+    /// The part below Phong's.
+    #[inline(always)]
+    fn glass(&self, interface: &Interface<f64>) -> Bxdf<f64> {
+        Bxdf::PerfectTransmitter(PerfectTransmitter { kr: self.kr, kt: self.kt, interface: *interface })
     }
 }
 
@@ -166,8 +172,7 @@ impl Material {
                 ..phong.scattering(place)
             },
             Self::Transparent(t) => {
-                let glass = PerfectTransmitter { kr: t.kr, kt: t.kt, interface: t.interface };
-                Scattering { body: Some(Bxdf::PerfectTransmitter(glass)), ..t.phong.scattering(place) }
+                Scattering { body: Some(t.glass(t.media.interface())), ..t.phong.scattering(place) }
             }
             Self::Dielectric(glass) => Scattering::of(glass.bxdf),
             Self::Thin(sheet) => Scattering::of(Bxdf::ThinDielectric(*sheet)),
@@ -176,7 +181,7 @@ impl Material {
         }
     }
 
-    /// What the media on both sides absorb, where the surface divides two.
+    /// The media on both sides, where the surface divides two.
     #[inline]
     pub fn media(&self) -> Option<&Media> {
         match self {
@@ -188,9 +193,15 @@ impl Material {
 
     /// The pair of indices, where the surface divides two media.
     pub fn interface(&self) -> Option<&Interface<f64>> {
+        self.media().map(Media::interface)
+    }
+
+    /// What the surface does to light with another medium outside, where it divides two media: as [`scattering`](Self::scattering)
+    /// has it in its specular or rough part.
+    pub fn within(&self, outside: Medium) -> Option<Bxdf<f64>> {
         match self {
-            Self::Transparent(t) => Some(&t.interface),
-            Self::Dielectric(glass) => Some(&glass.interface),
+            Self::Transparent(t) => Some(t.glass(t.media.within(outside).interface())),
+            Self::Dielectric(glass) => Some(glass.within(outside).bxdf),
             _ => None,
         }
     }
@@ -198,24 +209,28 @@ impl Material {
     /// True when crossing the surface changes nothing at all: the same index on both sides, nothing reflected, everything
     /// transmitted, no Phong part. Objects made of it are left out of the scene, so they are invisible to the last bit.
     pub fn is_invisible(&self) -> bool {
+        self.is_clear() && self.media().is_some_and(Media::are_equal)
+    }
+
+    /// True when crossing the surface changes nothing but by the media on both sides.
+    pub fn is_clear(&self) -> bool {
         match self {
-            Self::Transparent(t) => {
-                let clear = t.phong.is_nothing() && t.kr == Rgb::ZERO && t.kt == Rgb::ONE;
-                clear && t.interface.is_matched() && t.media.outside == t.media.inside
-            }
-            Self::Dielectric(glass) => {
-                glass.interface.is_matched() && glass.media.outside == glass.media.inside
-            }
+            Self::Transparent(t) => t.phong.is_nothing() && t.kr == Rgb::ZERO && t.kt == Rgb::ONE,
+            Self::Dielectric(_) => true,
             _ => false,
         }
     }
 
-    /// The share that a straight shadow ray keeps when it crosses the surface; zero for what is opaque.
-    pub fn straight_transmittance(&self) -> Rgb {
+    /// The share that a straight shadow ray keeps when it crosses the surface, with another medium outside where one is given; zero for
+    /// what is opaque.
+    pub fn straight_transmittance(&self, outside: Option<Medium>) -> Rgb {
         match self {
             Self::Transparent(t) => t.kt,
             // What goes straight through at a right angle; the rest of a straight shadow's errors is larger.
-            Self::Dielectric(glass) => Rgb::splat(1.0 - glass.interface.reflectance(1.0).unpolarised()),
+            Self::Dielectric(glass) => {
+                let media = outside.map_or(glass.media, |outside| glass.media.within(outside));
+                Rgb::splat(1.0 - media.interface().reflectance(1.0).unpolarised())
+            }
             Self::Thin(sheet) => sheet.shares(1.0).1,
             _ => Rgb::ZERO,
         }
@@ -276,13 +291,14 @@ impl Material {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Encoding, Image};
+    use crate::{Encoding, Image, IndexOfRefraction};
     use std::sync::Arc;
     use vitrum_math::{DVec2, DVec3};
 
     fn clear(ior: f64) -> Transparent {
-        let interface = Interface::new(1.0, ior).expect("valid");
-        Transparent { phong: Phong::NONE, kr: Rgb::ZERO, kt: Rgb::ONE, interface, media: Media::CLEAR }
+        let inside = Medium::clear(IndexOfRefraction::new(ior).expect("valid"));
+        let media = Media::new(Medium::AIR, inside);
+        Transparent { phong: Phong::NONE, kr: Rgb::ZERO, kt: Rgb::ONE, media }
     }
 
     #[test]

@@ -37,6 +37,17 @@ impl Scattering {
         Self { body: Some(bxdf), is_rough: !bxdf.is_specular(), ..Self::BLACK }
     }
 
+    /// The same with another mirror, glass or metal.
+    #[inline(always)]
+    pub fn with_body(self, bxdf: Bxdf<f64>) -> Self {
+        Self { body: Some(bxdf), is_rough: !bxdf.is_specular(), ..self }
+    }
+
+    /// Mirror, glass or metal, smooth or rough, where there is one.
+    pub fn body(&self) -> Option<&Bxdf<f64>> {
+        self.body.as_ref()
+    }
+
     /// The perfectly specular part, where there is one.
     #[inline]
     pub fn specular(&self) -> Option<&Bxdf<f64>> {

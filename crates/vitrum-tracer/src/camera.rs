@@ -1,6 +1,6 @@
 //! Cameras: from a point of the film to a ray.
 
-use vitrum_math::{DVec3, Ray, concentric_disk, unit};
+use vitrum_math::{Bounds, DVec3, Ray, concentric_disk, unit};
 
 /// How directions map to the film.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,6 +93,20 @@ impl Camera {
     /// Where the camera stands, metres.
     pub fn position(&self) -> DVec3 {
         self.position
+    }
+
+    /// A box around all points at which rays start.
+    pub(crate) fn origins(&self, [width, height]: [u32; 2]) -> Bounds {
+        let radius = match self.projection {
+            Projection::Pinhole { .. } => 0.0,
+            Projection::ThinLens { lens_radius, .. } => lens_radius,
+            Projection::Orthographic { .. } => {
+                // To a corner, and a pixel farther, where filters reach.
+                let across = 1.0 + f64::from(width) / f64::from(height);
+                (across + 4.0 / f64::from(height)) * self.up.length().max(self.right.length())
+            }
+        };
+        Bounds { min: self.position, max: self.position }.padded(radius)
     }
 
     /// How it maps directions to the film.

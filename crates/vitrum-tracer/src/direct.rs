@@ -1,10 +1,11 @@
 //! Light that arrives at a surface straight from a light.
 
+use crate::crossing::Nested;
 use crate::feature::Feature;
 use crate::light::{Arrival, Light};
-use crate::scene::Scene;
 use crate::settings::ShadowMode;
 use crate::stats::Stats;
+use crate::whereabouts::Whereabouts;
 use vitrum_bxdf::TransportMode;
 use vitrum_geometry::{Side, SurfaceInteraction};
 use vitrum_materials::{Absorption, Scattering};
@@ -14,25 +15,33 @@ use vitrum_math::{DVec3, Frame, Rgb};
 /// after any number of crossings, is not worth a shadow ray.
 const INVISIBLE: f64 = 1e-60;
 
+/// What there is on the way to the lights.
+pub(crate) struct Way<'w, W> {
+    pub(crate) nested: Nested<'w>,
+    pub(crate) shadow: ShadowMode,
+    /// What it starts in, where rays know the solids that they are in.
+    pub(crate) from: Option<&'w W>,
+    /// What absorbs along it, if anything does.
+    pub(crate) medium: Option<Absorption>,
+}
+
 /// The radiance that all lights together send by way of `surface` to where the ray came from; `normal` is the one that it
-/// is shaded with, `medium` what absorbs on the way, if anything does.
-pub(crate) fn direct(
-    scene: &Scene,
-    shadow: ShadowMode,
-    medium: Option<Absorption>,
+/// is shaded with.
+pub(crate) fn direct<W: Whereabouts>(
+    way: &Way<'_, W>,
     surface: &SurfaceInteraction,
     normal: DVec3,
     scattering: &Scattering,
     stats: &mut Stats,
 ) -> Rgb {
     let mut radiance = Rgb::ZERO;
-    for light in &scene.lights {
+    for light in &way.nested.scene.lights {
         // Light on the other side of the surface can't be reflected, whatever an interpolated normal says. Every light is on
         // the other side of the inner walls of glass, so this comes before anything else.
         if surface.side_of(light.offset(surface.point)) == Side::Incident {
-            let reflected = from_one(scene, light, shadow, surface, normal, scattering, stats);
+            let reflected = from_one(way, light, surface, normal, scattering, stats);
             // Light that goes through everything comes unweakened, too.
-            radiance += match medium {
+            radiance += match &way.medium {
                 Some(medium) if light.casts_shadows() => {
                     reflected * medium.transmittance(light.distance_from(surface.point))
                 }
@@ -45,10 +54,9 @@ pub(crate) fn direct(
 
 /// What one light on the viewer's side adds.
 #[inline(never)]
-fn from_one(
-    scene: &Scene,
+fn from_one<W: Whereabouts>(
+    way: &Way<'_, W>,
     light: &Light,
-    shadow: ShadowMode,
     surface: &SurfaceInteraction,
     normal: DVec3,
     scattering: &Scattering,
@@ -61,13 +69,12 @@ fn from_one(
     if reflected.max_element() <= INVISIBLE {
         return Rgb::ZERO;
     }
-    reflected * visibility(scene, shadow, light, &arrival, surface, stats)
+    reflected * visibility(way, light, &arrival, surface, stats)
 }
 
 /// The share of the light that reaches the surface: zero or one, but through glass in straight mode.
-fn visibility(
-    scene: &Scene,
-    shadow: ShadowMode,
+fn visibility<W: Whereabouts>(
+    way: &Way<'_, W>,
     light: &Light,
     arrival: &Arrival,
     surface: &SurfaceInteraction,
@@ -78,18 +85,38 @@ fn visibility(
     }
     stats.shadow_rays += 1;
     let mut query = surface.leave(arrival.towards, Side::Incident);
-    match shadow {
-        ShadowMode::Opaque => {
+    let &Way { ref nested, shadow, from, .. } = way;
+    let scene = nested.scene;
+    match (shadow, from) {
+        (ShadowMode::Opaque, Some(from)) if W::KNOWS_SOLIDS => {
+            let met = { *from }.meet(nested, &mut query, arrival.distance, stats);
+            if met.is_some() { Rgb::ZERO } else { Rgb::ONE }
+        }
+        (ShadowMode::Straight, Some(from)) if W::KNOWS_SOLIDS => {
+            stats.uses.count(Feature::StraightShadows);
+            let (mut media, mut transmittance) = (*from, Rgb::ONE);
+            while let Some(met) = media.meet(nested, &mut query, arrival.distance, stats) {
+                let outside = met.outside.map(|outside| *nested.table.medium(outside));
+                transmittance *= scene.material(met.hit.object, met.hit.face).straight_transmittance(outside);
+                if transmittance == Rgb::ZERO {
+                    break;
+                }
+                media = met.beyond;
+                query.pass(met.last.t, met.last.object, met.last.face);
+            }
+            transmittance
+        }
+        (ShadowMode::Opaque, _) => {
             let blocked = scene.aggregate().occluded(&query, arrival.distance, &mut stats.geometry);
             if blocked { Rgb::ZERO } else { Rgb::ONE }
         }
-        ShadowMode::Straight => {
+        (ShadowMode::Straight, _) => {
             stats.uses.count(Feature::StraightShadows);
             let mut transmittance = Rgb::ONE;
             while let Some(hit) = scene.aggregate().closest(&query, &mut stats.geometry)
                 && hit.t < arrival.distance
             {
-                transmittance *= scene.material(hit.object, hit.face).straight_transmittance();
+                transmittance *= scene.material(hit.object, hit.face).straight_transmittance(None);
                 if transmittance == Rgb::ZERO {
                     break;
                 }

@@ -16,6 +16,8 @@ pub enum Feature {
     Refraction,
     /// Media take their share of each segment.
     Absorption,
+    /// Rays know which solids they are in.
+    NestedMedia,
     /// Light that is asked for goes through sheets of glass.
     ThinSheets,
     /// Glass and metal scatter into a range of directions.
@@ -40,12 +42,13 @@ pub enum Feature {
 
 impl Feature {
     /// All of them.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Lights,
         Self::ShadowRays,
         Self::AmbientLight,
         Self::Refraction,
         Self::Absorption,
+        Self::NestedMedia,
         Self::ThinSheets,
         Self::Roughness,
         Self::Mirrors,
@@ -64,6 +67,7 @@ impl Feature {
         match self {
             Self::Lights => cfg!(not(vitrum_without = "lights")),
             Self::Absorption => cfg!(not(vitrum_without = "absorption")),
+            Self::NestedMedia => cfg!(not(vitrum_without = "nested media")),
             Self::ThinSheets => cfg!(not(vitrum_without = "thin sheets")),
             Self::Images => cfg!(not(vitrum_without = "images")),
             _ => true,
@@ -78,6 +82,7 @@ impl Feature {
             Self::AmbientLight => "ambient",
             Self::Refraction => "refraction",
             Self::Absorption => "absorption",
+            Self::NestedMedia => "nested media",
             Self::ThinSheets => "thin sheets",
             Self::Roughness => "rough glass, metal",
             Self::Mirrors => "mirrors",

@@ -11,11 +11,15 @@
 use crate::environment_sampler::Asked;
 use crate::feature::{Feature, Uses};
 use crate::light_sampler::{Chosen, Source, emitted};
-use crate::ray_tree::{Children, Node};
+use crate::media_list::MediaList;
+use crate::overlaps::MOST;
+use crate::ray_tree::Node;
 use crate::settings::{Branching, LightSampling};
-use crate::walker::{Policy, Walker, shading_normal, side};
+use crate::walker::{ChildrenOf, NodeOf, Policy, Walker, shading_normal, side};
+use crate::whereabouts::Whereabouts;
+use std::marker::PhantomData;
 use vitrum_bxdf::{Bxdf, Density, Sample, TransportMode};
-use vitrum_geometry::{Side, SurfaceInteraction};
+use vitrum_geometry::{Hit, Query, Side, SurfaceInteraction};
 use vitrum_materials::Scattering;
 use vitrum_math::{DVec3, Frame, NodeKey, Purpose, Rgb, SampleAddress};
 
@@ -34,11 +38,11 @@ const GUARDED_SURVIVAL: f64 = 0.25;
 /// What light is asked for ends this share of its distance short of it, so that its own surface is not in the way.
 const SHORT: f64 = 1e-9;
 
-/// Random paths.
-pub(crate) struct Path<const ABSORPTION: bool, const THIN_SHEETS: bool>;
+/// Random paths, whose rays remember `W` of media.
+pub(crate) struct Path<W, const THIN_SHEETS: bool>(PhantomData<W>);
 
 /// Random paths in any scene.
-pub(crate) type AnyPath = Path<true, true>;
+pub(crate) type AnyPath = Path<MediaList<MOST>, true>;
 
 /// What a node of a path remembers.
 #[derive(Clone, Copy)]
@@ -58,15 +62,18 @@ struct Chance {
     from: DVec3,
 }
 
-impl<const ABSORPTION: bool, const THIN_SHEETS: bool> Policy for Path<ABSORPTION, THIN_SHEETS> {
+impl<W: Whereabouts, const THIN_SHEETS: bool> Policy for Path<W, THIN_SHEETS> {
     type Memory = Trace;
+
+    type Media = W;
 
     const ROOT: Trace = Trace { key: NodeKey::ROOT, chance: None };
 
     #[inline(always)]
     fn can(feature: Feature) -> bool {
         match feature {
-            Feature::Absorption => ABSORPTION,
+            Feature::Absorption => W::KNOWS_MEDIUM,
+            Feature::NestedMedia => W::KNOWS_SOLIDS,
             Feature::ThinSheets => THIN_SHEETS,
             _ => true,
         }
@@ -75,11 +82,12 @@ impl<const ABSORPTION: bool, const THIN_SHEETS: bool> Policy for Path<ABSORPTION
     #[inline]
     fn hit(
         walker: &mut Walker<'_, Self>,
-        node: &Node<Trace>,
+        node: &NodeOf<Self>,
         surface: &SurfaceInteraction,
         scattering: &Scattering,
+        beyond: &W,
         address: &SampleAddress,
-        children: &mut Children<'_, Trace>,
+        children: &mut ChildrenOf<'_, Self>,
     ) -> Rgb {
         let of_back;
         let scattering = if surface.front {
@@ -88,13 +96,13 @@ impl<const ABSORPTION: bool, const THIN_SHEETS: bool> Policy for Path<ABSORPTION
             of_back = scattering.of_back();
             &of_back
         };
-        let light = walker.light(node, surface, scattering, address);
-        walker.children(node, surface, scattering, address, children);
+        let light = walker.light(node, surface, scattering, beyond, address);
+        walker.children(node, surface, scattering, beyond, address, children);
         light
     }
 
     #[inline(always)]
-    fn escape(walker: &Walker<'_, Self>, node: &Node<Trace>) -> Rgb {
+    fn escape(walker: &Walker<'_, Self>, node: &NodeOf<Self>) -> Rgb {
         let direction = node.query.ray.direction;
         match walker.lights.environment() {
             Some(environment) if walker.plan.environment_lights > 0 => {
@@ -107,16 +115,17 @@ impl<const ABSORPTION: bool, const THIN_SHEETS: bool> Policy for Path<ABSORPTION
     }
 }
 
-type PathNode = Node<Trace>;
+type PathNode<W> = Node<Trace, W>;
 
-impl<const ABSORPTION: bool, const THIN_SHEETS: bool> Walker<'_, Path<ABSORPTION, THIN_SHEETS>> {
+impl<W: Whereabouts, const THIN_SHEETS: bool> Walker<'_, Path<W, THIN_SHEETS>> {
     /// The radiance that a hit sends towards where the ray came from, apart from what comes along its children.
     #[inline]
     fn light(
         &mut self,
-        node: &PathNode,
+        node: &PathNode<W>,
         surface: &SurfaceInteraction,
         scattering: &Scattering,
+        beyond: &W,
         address: &SampleAddress,
     ) -> Rgb {
         let mut light = Rgb::ZERO;
@@ -125,7 +134,7 @@ impl<const ABSORPTION: bool, const THIN_SHEETS: bool> Walker<'_, Path<ABSORPTION
                 scattering.emitted * self.share_met(node, |from| self.lights.pdf(self.scene, from, surface));
         }
         if self.needs(Feature::Lights) && scattering.answers_lights() {
-            light += self.ask_a_light(node, surface, scattering, address);
+            light += self.ask_a_light(node, surface, scattering, beyond, address);
         }
         light
     }
@@ -133,7 +142,7 @@ impl<const ABSORPTION: bool, const THIN_SHEETS: bool> Walker<'_, Path<ABSORPTION
     /// The weight of light that a path meets, where from the point at which its direction was chosen it could have been asked
     /// for with a density per steradian.
     #[inline]
-    fn share_met(&self, node: &PathNode, asked: impl FnOnce(DVec3) -> Option<f64>) -> f64 {
+    fn share_met(&self, node: &PathNode<W>, asked: impl FnOnce(DVec3) -> Option<f64>) -> f64 {
         let Some(Chance { pdf, from }) = node.memory.chance else { return 1.0 };
         match (asked(from), self.settings.light_sampling) {
             (None, _) | (_, LightSampling::Bsdf) => 1.0,
@@ -147,9 +156,10 @@ impl<const ABSORPTION: bool, const THIN_SHEETS: bool> Walker<'_, Path<ABSORPTION
     #[inline(never)]
     fn ask_a_light(
         &mut self,
-        node: &PathNode,
+        node: &PathNode<W>,
         surface: &SurfaceInteraction,
         scattering: &Scattering,
+        beyond: &W,
         address: &SampleAddress,
     ) -> Rgb {
         self.stats.uses.count(Feature::Lights);
@@ -159,7 +169,7 @@ impl<const ABSORPTION: bool, const THIN_SHEETS: bool> Walker<'_, Path<ABSORPTION
         else {
             return Rgb::ZERO;
         };
-        let beyond = self.settings.deepest().saturating_sub(node.depth);
+        let left_deeper = self.settings.deepest().saturating_sub(node.depth);
         let (towards, distance, arriving, asked) = match source {
             Source::Delta(light) => {
                 let light = &self.scene.lights[*light];
@@ -169,7 +179,7 @@ impl<const ABSORPTION: bool, const THIN_SHEETS: bool> Walker<'_, Path<ABSORPTION
             }
             _ if self.settings.light_sampling == LightSampling::Bsdf => return Rgb::ZERO,
             // What no ray could meet any more is not asked for either: the weights of both ways belong together.
-            _ if beyond == 0 => return Rgb::ZERO,
+            _ if left_deeper == 0 => return Rgb::ZERO,
             Source::Environment(part) => {
                 let asked = self.lights.environment().and_then(|all| all.sample(*part, [u, v]));
                 let Some(Asked { towards, radiance, pdf }) = asked else { return Rgb::ZERO };
@@ -200,16 +210,18 @@ impl<const ABSORPTION: bool, const THIN_SHEETS: bool> Walker<'_, Path<ABSORPTION
         if scattered.max_element() <= 0.0 {
             return Rgb::ZERO;
         }
-        let sheets = if asked.is_some() { beyond - 1 } else { u32::MAX };
-        scattered * self.unblocked(node, surface, side, towards, distance, sheets)
+        let sheets = if asked.is_some() { left_deeper - 1 } else { u32::MAX };
+        scattered * self.unblocked(node, surface, beyond, side, towards, distance, sheets)
     }
 
     /// The share of the light that comes through from a distance: nothing through objects, but for so many thin sheets; less
     /// through a medium that absorbs.
+    #[expect(clippy::too_many_arguments, reason = "a hit, a direction, and what is in between")]
     fn unblocked(
         &mut self,
-        node: &PathNode,
+        node: &PathNode<W>,
         surface: &SurfaceInteraction,
+        beyond: &W,
         side: Side,
         towards: DVec3,
         distance: f64,
@@ -220,24 +232,25 @@ impl<const ABSORPTION: bool, const THIN_SHEETS: bool> Walker<'_, Path<ABSORPTION
         }
         self.stats.shadow_rays += 1;
         let mut query = surface.leave(towards, side);
+        let mut media = self.media(node, surface, side, beyond);
+        let nested = self.nested();
         let mut share = if self.needs(Feature::Absorption) {
             self.stats.uses.count(Feature::Absorption);
-            self.scene.absorption_of(self.medium(node, surface, side)).transmittance(distance)
+            self.media.absorption_of(media.medium(&nested)).transmittance(distance)
         } else {
             Rgb::ONE
         };
-        if !self.needs(Feature::ThinSheets) {
+        if !self.needs(Feature::ThinSheets) && !self.knows_solids() {
             let blocked = self.scene.aggregate().occluded(&query, distance, &mut self.stats.geometry);
             return if blocked { Rgb::ZERO } else { share };
         }
-        self.stats.uses.count(Feature::ThinSheets);
-        while let Some(hit) = self.scene.aggregate().closest(&query, &mut self.stats.geometry)
-            && hit.t < distance
-        {
-            let sheet = self.scene.aggregate().interaction(&query, &hit, &mut self.stats.geometry);
+        while let Some((hit, sheet)) = self.in_the_way(&mut media, &mut query, distance) {
             let scattering = self.scene.scattering(&hit, sheet.point, &mut self.stats.uses);
             let through = match scattering.specular() {
-                Some(thin @ Bxdf::ThinDielectric(_)) => self.split(&sheet, thin).0.transmitted,
+                Some(thin @ Bxdf::ThinDielectric(_)) => {
+                    self.stats.uses.count(Feature::ThinSheets);
+                    self.split(&sheet, thin).0.transmitted
+                }
                 _ => None,
             };
             let (Some(through), true) = (through, sheets > 0) else { return Rgb::ZERO };
@@ -248,24 +261,44 @@ impl<const ABSORPTION: bool, const THIN_SHEETS: bool> Walker<'_, Path<ABSORPTION
         share
     }
 
+    /// The first surface that is there, nearer than a distance.
+    fn in_the_way(
+        &mut self,
+        media: &mut W,
+        query: &mut Query,
+        distance: f64,
+    ) -> Option<(Hit, SurfaceInteraction)> {
+        if self.knows_solids() {
+            let met = media.meet(&self.nested(), query, distance, &mut self.stats)?;
+            return Some((met.hit, met.surface));
+        }
+        self.stats.uses.count(Feature::ThinSheets);
+        let hit = self.scene.aggregate().closest_within(query, distance, &mut self.stats.geometry)?;
+        if hit.t >= distance {
+            return None;
+        }
+        Some((hit, self.scene.aggregate().interaction(query, &hit, &mut self.stats.geometry)))
+    }
+
     /// Puts the directions in which a path goes on into the tree.
     #[inline]
     fn children(
         &mut self,
-        node: &PathNode,
+        node: &PathNode<W>,
         surface: &SurfaceInteraction,
         scattering: &Scattering,
+        beyond: &W,
         address: &SampleAddress,
-        children: &mut Children<'_, Trace>,
+        children: &mut ChildrenOf<'_, Path<W, THIN_SHEETS>>,
     ) {
         let scatters = scattering.answers_lights();
         let choice = || address.first(node.memory.key, Purpose::Choice);
         let Some(body) = scattering.specular() else {
             if scatters
                 && let Some(way) =
-                    anywhere(node, surface, scattering, address, choice(), &mut self.stats.uses)
+                    anywhere(&node.memory, surface, scattering, address, choice(), &mut self.stats.uses)
             {
-                self.go_on(node, surface, &way, 1.0, address, children);
+                self.go_on(node, surface, &way, 1.0, beyond, address, children);
             }
             return;
         };
@@ -290,15 +323,15 @@ impl<const ABSORPTION: bool, const THIN_SHEETS: bool> Walker<'_, Path<ABSORPTION
             && (all || at < reflected)
         {
             let probability = if all { 1.0 } else { reflected / total };
-            let way = along(node, &frame, child, body);
-            self.go_on(node, surface, &way, probability, address, children);
+            let way = along(&node.memory, &frame, child, body);
+            self.go_on(node, surface, &way, probability, beyond, address, children);
         }
         if let Some(child) = &split.transmitted
             && (all || reflected <= at && at < reflected + transmitted)
         {
             let probability = if all { 1.0 } else { transmitted / total };
-            let way = along(node, &frame, child, body);
-            self.go_on(node, surface, &way, probability, address, children);
+            let way = along(&node.memory, &frame, child, body);
+            self.go_on(node, surface, &way, probability, beyond, address, children);
         }
         if scatters && (all || reflected + transmitted <= at) {
             let u = if all {
@@ -307,22 +340,24 @@ impl<const ABSORPTION: bool, const THIN_SHEETS: bool> Walker<'_, Path<ABSORPTION
                 ((at - reflected - transmitted) / diffuse).clamp(0.0, 1.0 - f64::EPSILON)
             };
             let probability = if all { 1.0 } else { diffuse / total };
-            if let Some(way) = anywhere(node, surface, scattering, address, u, &mut self.stats.uses) {
-                self.go_on(node, surface, &way, probability, address, children);
+            if let Some(way) = anywhere(&node.memory, surface, scattering, address, u, &mut self.stats.uses) {
+                self.go_on(node, surface, &way, probability, beyond, address, children);
             }
         }
     }
 
     /// On along one way, chosen with a probability, unless roulette or the depth limit ends it.
     #[inline]
+    #[expect(clippy::too_many_arguments, reason = "all of them are used once, and none belongs to another")]
     fn go_on(
         &mut self,
-        node: &PathNode,
+        node: &PathNode<W>,
         surface: &SurfaceInteraction,
         way: &Way,
         probability: f64,
+        beyond: &W,
         address: &SampleAddress,
-        children: &mut Children<'_, Trace>,
+        children: &mut ChildrenOf<'_, Path<W, THIN_SHEETS>>,
     ) {
         let mut throughput = node.throughput * way.weight / probability;
         let eta_squared = node.eta_squared * (way.eta * way.eta);
@@ -355,7 +390,7 @@ impl<const ABSORPTION: bool, const THIN_SHEETS: bool> Walker<'_, Path<ABSORPTION
         next.throughput = throughput;
         next.eta_squared = eta_squared;
         next.depth = depth;
-        next.medium = self.medium(node, surface, way.side);
+        next.media = self.media(node, surface, way.side, beyond);
         next.memory = way.trace;
     }
 }
@@ -372,15 +407,15 @@ struct Way {
 
 /// Along a specular child.
 #[inline]
-fn along(node: &PathNode, frame: &Frame, child: &Sample<f64>, body: &Bxdf<f64>) -> Way {
+fn along(trace: &Trace, frame: &Frame, child: &Sample<f64>, body: &Bxdf<f64>) -> Way {
     let side = side(child);
     let key = match side {
-        Side::Incident => node.memory.key.reflected(),
-        Side::Transmitted => node.memory.key.transmitted(),
+        Side::Incident => trace.key.reflected(),
+        Side::Transmitted => trace.key.transmitted(),
     };
     // Straight through a sheet, light could still have been asked for.
     let straight = side == Side::Transmitted && matches!(body, Bxdf::ThinDielectric(_));
-    let chance = if straight { node.memory.chance } else { None };
+    let chance = if straight { trace.chance } else { None };
     let trace = Trace { key, chance };
     Way { direction: in_world(frame, child), side, weight: child.weight, eta: child.eta, trace }
 }
@@ -388,7 +423,7 @@ fn along(node: &PathNode, frame: &Frame, child: &Sample<f64>, body: &Bxdf<f64>) 
 /// In a direction of the parts that have a density; `None` where they absorb, or an interpolated normal misleads.
 #[inline]
 fn anywhere(
-    node: &PathNode,
+    trace: &Trace,
     surface: &SurfaceInteraction,
     scattering: &Scattering,
     address: &SampleAddress,
@@ -399,7 +434,7 @@ fn anywhere(
         uses.count(Feature::Roughness);
     }
     let frame = Frame::around(shading_normal(surface));
-    let u = address.pair(node.memory.key, Purpose::Direction);
+    let u = address.pair(trace.key, Purpose::Direction);
     let child = scattering.sample(frame.to_local(surface.wo), uc, u, TransportMode::Radiance)?;
     let (direction, side) = (in_world(&frame, &child), side(&child));
     if surface.side_of(direction) != side {
@@ -407,7 +442,7 @@ fn anywhere(
     }
     let Density::SolidAngle(pdf) = child.pdf else { unreachable!("it has a density") };
     let chance = Some(Chance { pdf, from: surface.point });
-    let trace = Trace { key: node.memory.key.scattered(), chance };
+    let trace = Trace { key: trace.key.scattered(), chance };
     Some(Way { direction, side, weight: child.weight, eta: child.eta, trace })
 }
 

@@ -16,12 +16,9 @@
 
 use crate::film::{Film, SQUARE};
 use crate::filter::FilterSampler;
-use crate::light_sampler::LightSampler;
 use crate::path::AnyPath;
-use crate::plan::Plan;
-use crate::render::Progress;
-use crate::scene::Scene;
-use crate::settings::{Branching, Integrator, Settings};
+use crate::render::{Progress, Setup};
+use crate::settings::{Branching, Integrator};
 use crate::threads::on_each;
 use crate::trial::{self, Findings, WAYS};
 use crate::walker::Walker;
@@ -80,7 +77,7 @@ impl Verdict {
 
 /// How the paths of each square of the film branch, and the rays that it took to find out.
 pub(crate) fn branching(
-    what @ (_, _, settings, plan): (&Scene, &LightSampler, &Settings, &Plan),
+    setup @ Setup { settings, plan, .. }: Setup<'_>,
     filter: &FilterSampler,
     film: &Film,
     progress: &dyn Progress,
@@ -102,7 +99,7 @@ pub(crate) fn branching(
         (0..count).map(|i| (2 * i + 1) * squares / (2 * count)).collect()
     });
     let survey = |walker: &mut Walker<'_, AnyPath>, square| trial::nets(walker, filter, square);
-    let (surveyed, survey_rays) = tried(what, &all_over, survey, progress);
+    let (surveyed, survey_rays) = tried(setup, &all_over, survey, progress);
     let verdict = Verdict::of(&surveyed);
 
     // A square is judged with its neighbours in the whole image, so that a part of it is judged the same.
@@ -111,7 +108,7 @@ pub(crate) fn branching(
     let to = [(first[0] + columns + 1).min(whole[0]), (first[1] + rows + 1).min(whole[1])];
     let here = [0, 1].map(|axis| (from[axis]..to[axis]).collect::<Vec<u32>>());
     let look = |walker: &mut Walker<'_, AnyPath>, square| trial::singles(walker, filter, square);
-    let (found, rays) = tried(what, &here, look, progress);
+    let (found, rays) = tried(setup, &here, look, progress);
     let judged = |at: u32| {
         let (column, row) = (first[0] + at % columns, first[1] + at / columns);
         let mut sum = Findings::default();
@@ -128,15 +125,15 @@ pub(crate) fn branching(
 /// What is found of the squares in columns and rows, row by row, and the rays that it took. What is stopped now is stopped before
 /// the first sample.
 fn tried<T: Default + Send>(
-    (scene, lights, settings, plan): (&Scene, &LightSampler, &Settings, &Plan),
+    setup: Setup<'_>,
     [columns, rows]: &[Vec<u32>; 2],
     look: impl Fn(&mut Walker<'_, AnyPath>, [u32; 2]) -> T + Sync,
     progress: &dyn Progress,
 ) -> (Vec<T>, u64) {
     let squares: Vec<[u32; 2]> =
         rows.iter().flat_map(|row| columns.iter().map(|column| [*column, *row])).collect();
-    let done = on_each(settings, &squares, |square| {
-        let mut walker = Walker::<AnyPath>::new(scene, lights, settings, plan);
+    let done = on_each(setup.settings, &squares, |square| {
+        let mut walker = Walker::<AnyPath>::new(setup);
         let found = if progress.is_stopped() { T::default() } else { look(&mut walker, *square) };
         (found, walker.stats.rays())
     });

@@ -5,10 +5,11 @@
 
 use crate::feature::Feature;
 use crate::light_sampler::LightSampler;
+use crate::overlaps::MOST;
 use crate::scene::Scene;
-use crate::settings::{Integrator, NoSkip, Settings, ShadowMode};
+use crate::settings::{Integrator, Settings, ShadowMode};
 use vitrum_geometry::Shape;
-use vitrum_materials::{Absorption, Material, Texture};
+use vitrum_materials::{Material, Medium, Texture};
 use vitrum_math::Rgb;
 
 /// What a scene needs; `false` and zero mean that nothing of the kind runs.
@@ -33,6 +34,9 @@ pub struct Plan {
     pub divides: bool,
     /// Media that absorb: a factor for each segment of a ray.
     pub absorption: bool,
+    /// How many solids a ray may be in at a time, where some reach into each other: 2 or 8, as there is room for; 0 where every
+    /// surface knows what is on both sides of it.
+    pub nested_media: usize,
     /// Sheets of glass, which light that is asked for goes through.
     pub thin_sheets: bool,
     /// Glass and metal that scatters into a range of directions.
@@ -79,6 +83,7 @@ impl Plan {
             Feature::AmbientLight => self.ambient,
             Feature::Refraction => self.dielectrics,
             Feature::Absorption => self.absorption,
+            Feature::NestedMedia => self.nested_media > 0,
             Feature::ThinSheets => self.thin_sheets,
             Feature::Roughness => self.rough,
             Feature::Mirrors => self.mirrors,
@@ -115,8 +120,14 @@ impl Plan {
         let ambient = !is_path
             && scene.ambient != Rgb::ZERO
             && materials.iter().filter_map(Material::phong).any(|p| p.ka > 0.0);
-        let absorbs = |a: Absorption| !a.is_none();
-        let absorption = absorbs(scene.absorption)
+        let absorbs = |medium: Medium| !medium.absorption.is_none();
+        let nested_media = match scene.overlaps().depth {
+            0 => 0,
+            1 | 2 => 2,
+            _ => MOST,
+        };
+        let absorption = absorbs(scene.medium)
+            || scene.camera_medium.is_some_and(absorbs)
             || materials.iter().filter_map(Material::media).any(|m| absorbs(m.inside) || absorbs(m.outside));
         let mirrors =
             materials.iter().any(|m| matches!(m, Material::Reflective { .. } | Material::Conductor(_)));
@@ -126,6 +137,7 @@ impl Plan {
             area_lights,
             environment_lights,
             absorption,
+            nested_media,
             thin_sheets: is_path && thin,
             rough,
             shadow_lights,
@@ -149,13 +161,13 @@ impl Plan {
         let left_out = Feature::ALL.into_iter().find(|feature| needed.wants(*feature) && !feature.is_built());
         assert!(left_out.is_none(), "this build was made without what the scene needs: {left_out:?}");
         // What is made to run: it changes nothing.
-        let NoSkip { lights, ambient, absorption, thin_sheets, object_tree: _, solids: _, outlines: _ } =
-            settings.no_skip;
+        let no_skip = settings.no_skip;
         Self {
-            lights: needed.lights.max(usize::from(lights)),
-            ambient: needed.ambient || ambient && !is_path,
-            absorption: needed.absorption || absorption,
-            thin_sheets: needed.thin_sheets || thin_sheets && is_path,
+            lights: needed.lights.max(usize::from(no_skip.lights)),
+            ambient: needed.ambient || no_skip.ambient && !is_path,
+            absorption: needed.absorption || no_skip.absorption,
+            nested_media: needed.nested_media.max(if no_skip.nested_media { MOST } else { 0 }),
+            thin_sheets: needed.thin_sheets || no_skip.thin_sheets && is_path,
             ..needed
         }
     }

@@ -4,7 +4,7 @@
 //! they are done its place is free again. A node is too large for registers, and copying in large pieces what was just written in
 //! small ones makes the processor wait (measured: ARCHITECTURE.md).
 
-use crate::scene::Medium;
+use crate::whereabouts::Whereabouts;
 use vitrum_geometry::Query;
 use vitrum_math::Rgb;
 
@@ -17,36 +17,39 @@ const FAR: u32 = 32;
 
 /// A ray, and what its radiance counts for.
 #[derive(Clone, Copy)]
-pub(crate) struct Node<M> {
+pub(crate) struct Node<M, W> {
     pub(crate) query: Query,
     pub(crate) throughput: Rgb,
     /// Product of eta² over the crossings so far: throughput times this is the weight without the radiance factor, by which
     /// subtrees are judged.
     pub(crate) eta_squared: f64,
     pub(crate) depth: u32,
-    /// What it goes through, where media absorb.
-    pub(crate) medium: Medium,
+    /// What it goes through.
+    pub(crate) media: W,
     pub(crate) memory: M,
 }
 
 /// The nodes that wait.
-pub(crate) struct RayTree<M> {
-    places: Vec<Place<M>>,
+pub(crate) struct RayTree<M, W> {
+    places: Vec<Place<M, W>>,
     /// The place of the last one.
     last: Option<u32>,
     waiting: usize,
 }
 
 #[derive(Clone, Copy)]
-struct Place<M> {
-    node: Node<M>,
+struct Place<M, W> {
+    node: Node<M, W>,
     /// The place of the one that waited before it.
     before: Option<u32>,
 }
 
+/// A node that is followed, and where its children are put.
+type Taken<'t, M, W> = (&'t mut Node<M, W>, Children<'t, M, W>);
+
 /// Where the children of a node are put.
-pub(crate) struct Children<'t, M> {
-    free: &'t mut [Place<M>],
+pub(crate) struct Children<'t, M, W> {
+    free: &'t mut [Place<M, W>],
     /// The place of the first of them.
     first: u32,
     count: u32,
@@ -54,19 +57,19 @@ pub(crate) struct Children<'t, M> {
     waiting: &'t mut usize,
 }
 
-impl<M> Default for RayTree<M> {
+impl<M, W> Default for RayTree<M, W> {
     fn default() -> Self {
         Self { places: Vec::new(), last: None, waiting: 0 }
     }
 }
 
-impl<M: Copy> RayTree<M> {
+impl<M: Copy, W: Whereabouts> RayTree<M, W> {
     /// Begins a tree with a camera ray.
     #[inline]
-    pub(crate) fn plant(&mut self, query: Query, memory: M) {
+    pub(crate) fn plant(&mut self, query: Query, media: W, memory: M) {
         if self.places.is_empty() {
-            let (throughput, eta_squared, depth, medium) = (Rgb::ONE, 1.0, 0, Medium::AROUND);
-            let node = Node { query, throughput, eta_squared, depth, medium, memory };
+            let (throughput, eta_squared, depth) = (Rgb::ONE, 1.0, 0);
+            let node = Node { query, throughput, eta_squared, depth, media, memory };
             self.places.resize(1 + MOST_CHILDREN, Place { node, before: None });
         }
         let Place { node, before } = &mut self.places[0];
@@ -74,7 +77,7 @@ impl<M: Copy> RayTree<M> {
         node.throughput = Rgb::ONE;
         node.eta_squared = 1.0;
         node.depth = 0;
-        node.medium = Medium::AROUND;
+        node.media = media;
         node.memory = memory;
         *before = None;
         (self.last, self.waiting) = (Some(0), 1);
@@ -83,7 +86,7 @@ impl<M: Copy> RayTree<M> {
     /// The next node, and where its children are put.
     // Always: there are six walkers, and with so many callers the compiler would not. All these together cost 2 %.
     #[inline(always)]
-    pub(crate) fn next(&mut self) -> Option<(&mut Node<M>, Children<'_, M>)> {
+    pub(crate) fn next(&mut self) -> Option<Taken<'_, M, W>> {
         let mut at = self.last?;
         let lowest = self.places[at as usize].before.map_or(0, |before| before + 1);
         if at - lowest >= FAR {
@@ -103,10 +106,10 @@ impl<M: Copy> RayTree<M> {
     }
 }
 
-impl<M> Children<'_, M> {
+impl<M, W> Children<'_, M, W> {
     /// Adds one that is to be written, and is followed next.
     #[inline]
-    pub(crate) fn push(&mut self) -> &mut Node<M> {
+    pub(crate) fn push(&mut self) -> &mut Node<M, W> {
         let Place { node, before } = &mut self.free[self.count as usize];
         *before = *self.last;
         *self.last = Some(self.first + self.count);
@@ -127,9 +130,9 @@ mod tests {
     use super::*;
     use vitrum_math::{DVec3, Ray};
 
-    fn tree() -> RayTree<u32> {
+    fn tree() -> RayTree<u32, ()> {
         let mut tree = RayTree::default();
-        tree.plant(Query::new(Ray::new(DVec3::ZERO, DVec3::Z)), 0);
+        tree.plant(Query::new(Ray::new(DVec3::ZERO, DVec3::Z)), (), 0);
         tree
     }
 

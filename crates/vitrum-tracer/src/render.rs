@@ -4,8 +4,11 @@ use crate::feature::Feature;
 use crate::film::{Buffer, Film, Pixel, PixelSum};
 use crate::filter::FilterSampler;
 use crate::light_sampler::LightSampler;
+use crate::media::{MediaTable, MediumId};
+use crate::media_list::MediaList;
 use crate::outlines::Outlines;
-use crate::path::Path;
+use crate::overlaps::MOST;
+use crate::path::{AnyPath, Path};
 use crate::pilot;
 use crate::plan::Plan;
 use crate::scene::Scene;
@@ -101,6 +104,16 @@ pub enum RenderError {
     Threads(String),
 }
 
+/// A scene, how it is rendered, and what was worked out for that.
+#[derive(Clone, Copy)]
+pub(crate) struct Setup<'s> {
+    pub(crate) scene: &'s Scene,
+    pub(crate) lights: &'s LightSampler,
+    pub(crate) settings: &'s Settings,
+    pub(crate) plan: &'s Plan,
+    pub(crate) media: &'s MediaTable,
+}
+
 /// Renders a scene.
 ///
 /// # Errors
@@ -149,14 +162,16 @@ fn buffers(settings: &Settings) -> usize {
 fn render_here(scene: &Scene, settings: &Settings, mut film: Film, progress: &dyn Progress) -> Rendering {
     let lights = LightSampler::of(scene, settings);
     let plan = Plan::with_lights(scene, settings, &lights);
+    let with_solids = plan.needs(Feature::NestedMedia) || plan.needs(Feature::Absorption);
+    let media = MediaTable::new(scene, settings.size, with_solids);
+    let setup = Setup { scene, lights: &lights, settings, plan: &plan, media: &media };
     let mut stats = Stats::default();
     let tiles = tiles(settings);
     let work: Vec<(usize, Crop)> =
         (0..film.buffers().len()).flat_map(|buffer| tiles.iter().map(move |tile| (buffer, *tile))).collect();
     let filter = FilterSampler::new(settings.filter);
     let outlines = Outlines::new(scene, settings);
-    let (branching, pilot_rays) =
-        pilot::branching((scene, &lights, settings, &plan), &filter, &film, progress);
+    let (branching, pilot_rays) = pilot::branching(setup, &filter, &film, progress);
     stats.pilot_rays = pilot_rays;
     let mut schedule = Schedule::new(settings);
     let render_tile = smallest(&plan, settings.integrator);
@@ -165,8 +180,8 @@ fn render_here(scene: &Scene, settings: &Settings, mut film: Film, progress: &dy
             return Rendering { film, stats, plan, branching, ended };
         }
         let render = |(buffer, tile): &(usize, Crop)| {
-            let (what, how) = ((scene, &lights, settings, &plan), (&branching[..], &filter, &outlines));
-            let done = render_tile(what, how, &film, *buffer, *tile, progress)?;
+            let how = (&branching[..], &filter, &outlines);
+            let done = render_tile(setup, how, &film, *buffer, *tile, progress)?;
             progress.advance(done.1.samples, done.1.rays());
             Some(done)
         };
@@ -225,7 +240,7 @@ fn tiles(settings: &Settings) -> Vec<Crop> {
 
 /// [`render_tile`] by one of the walkers.
 type RenderTile = fn(
-    (&Scene, &LightSampler, &Settings, &Plan),
+    Setup<'_>,
     (&[Branching], &FilterSampler, &Outlines),
     &Film,
     usize,
@@ -233,32 +248,34 @@ type RenderTile = fn(
     &dyn Progress,
 ) -> Option<(Vec<Pixel>, Stats)>;
 
-/// By the smallest walker that can do what the scene needs.
+/// By the smallest walker that can do what the scene needs. There are eight, and each takes its time to be compiled.
 fn smallest(plan: &Plan, integrator: Integrator) -> RenderTile {
     let (absorption, thin_sheets) = (plan.needs(Feature::Absorption), plan.needs(Feature::ThinSheets));
-    match (integrator, absorption, thin_sheets) {
-        (Integrator::Whitted, false, _) => render_tile::<Whitted<false>>,
-        (Integrator::Whitted, true, _) => render_tile::<Whitted<true>>,
-        (Integrator::Path, false, false) => render_tile::<Path<false, false>>,
-        (Integrator::Path, false, true) => render_tile::<Path<false, true>>,
-        (Integrator::Path, true, false) => render_tile::<Path<true, false>>,
-        (Integrator::Path, true, true) => render_tile::<Path<true, true>>,
+    match (integrator, plan.nested_media) {
+        (Integrator::Whitted, 0) if absorption => render_tile::<Whitted<MediumId>>,
+        (Integrator::Whitted, 0) => render_tile::<Whitted<()>>,
+        (Integrator::Whitted, _) => render_tile::<Whitted<MediaList<MOST>>>,
+        (Integrator::Path, 0) if thin_sheets => render_tile::<Path<MediumId, true>>,
+        (Integrator::Path, 0) if absorption => render_tile::<Path<MediumId, false>>,
+        (Integrator::Path, 0) => render_tile::<Path<(), false>>,
+        (Integrator::Path, 1 | 2) => render_tile::<Path<MediaList<2>, true>>,
+        (Integrator::Path, _) => render_tile::<AnyPath>,
     }
 }
 
 /// What the present round brings to the pixels of a tile, row by row; `None` when the render is to stop before the tile is done.
 fn render_tile<P: Policy>(
-    (scene, lights, settings, plan): (&Scene, &LightSampler, &Settings, &Plan),
+    setup: Setup<'_>,
     (branching, filter, outlines): (&[Branching], &FilterSampler, &Outlines),
     film: &Film,
     buffer: usize,
     tile: Crop,
     progress: &dyn Progress,
 ) -> Option<(Vec<Pixel>, Stats)> {
-    let mut walker = Walker::<P>::new(scene, lights, settings, plan);
+    let mut walker = Walker::<P>::new(setup);
     let mut pixels = Vec::with_capacity(tile.width as usize * tile.height as usize);
     let mut sum = PixelSum::default();
-    let seed = settings.seed.wrapping_add(buffer as u64 * OTHER_BUFFER);
+    let seed = setup.settings.seed.wrapping_add(buffer as u64 * OTHER_BUFFER);
     let Buffer { goals, pixels: before } = &film.buffers()[buffer];
     for y in tile.y..tile.y + tile.height {
         for x in tile.x..tile.x + tile.width {
@@ -272,7 +289,7 @@ fn render_tile<P: Policy>(
                 if progress.is_stopped() {
                     return None;
                 }
-                let address = SampleAddress::new(seed, x, y, sample).of_sequence(settings.sequence);
+                let address = SampleAddress::new(seed, x, y, sample).of_sequence(setup.settings.sequence);
                 let rounded = walker.sample(filter, [x, y], &address);
                 if rounded.is_none() {
                     walker.stats.dropped += 1;

@@ -4,8 +4,9 @@ use crate::background::Background;
 use crate::camera::Camera;
 use crate::feature::{Feature, Uses};
 use crate::light::Light;
+use crate::overlaps::Overlaps;
 use vitrum_geometry::{Aggregate, Counters, Hit, Object, Query, Shape};
-use vitrum_materials::{Absorption, IndexOfRefraction, Material, Place, Scattering};
+use vitrum_materials::{Material, Medium, Place, Scattering};
 use vitrum_math::{DVec2, DVec3, Ray, Rgb, unit};
 
 /// An object with its name and material, as it enters a [`Scene`].
@@ -18,15 +19,6 @@ pub struct SceneObject {
     /// What it is made of: the materials that its faces number (see [`Object::material_of`]). A number beyond the last
     /// stands for the last.
     pub materials: Vec<Material>,
-}
-
-/// A medium that a ray goes through: a side of one of the scene's materials, or what surrounds everything. Four bytes, because
-/// nodes of ray trees are copied.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Medium(u32);
-
-impl Medium {
-    pub(crate) const AROUND: Self = Self(u32::MAX);
 }
 
 /// A scene that can't be built.
@@ -42,6 +34,12 @@ pub enum SceneError {
     /// More objects than 32-bit ids count.
     #[error("{0} objects are too many")]
     TooMany(usize),
+    /// More solids of glass than a ray keeps count of may share a point.
+    #[error(
+        "more than 8 solids of glass overlap in one place: `{}`; join some of them, or say what is outside of each (`outside`)",
+        .0.join("`, `")
+    )]
+    Overlap(Vec<String>),
 }
 
 /// Where a ray hits; counts what textures ask of it.
@@ -88,9 +86,10 @@ pub struct Scene {
     /// Lights; sums over them are formed in this order.
     pub lights: Vec<Light>,
     /// What surrounds everything.
-    pub medium: IndexOfRefraction,
-    /// What that absorbs.
-    pub absorption: Absorption,
+    pub medium: Medium,
+    /// What the camera stands in; `None` for what is found there.
+    pub camera_medium: Option<Medium>,
+    overlaps: Overlaps,
 }
 
 impl Scene {
@@ -98,7 +97,7 @@ impl Scene {
     /// are left out.
     ///
     /// # Errors
-    /// [`SceneError`] for duplicate names and objects without a material.
+    /// [`SceneError`] for duplicate names, objects without a material, and too many solids in one place.
     pub fn new(mut objects: Vec<SceneObject>, camera: Camera) -> Result<Self, SceneError> {
         objects.sort_by(|a, b| a.name.cmp(&b.name));
         if let Some(pair) = objects.windows(2).find(|pair| pair[0].name == pair[1].name) {
@@ -110,8 +109,9 @@ impl Scene {
         if let Some(object) = objects.iter().find(|o| o.materials.is_empty()) {
             return Err(SceneError::NoMaterial(object.name.clone()));
         }
-        let (invisible, seen): (Vec<_>, Vec<_>) =
-            objects.into_iter().partition(|o| o.materials.iter().all(Material::is_invisible));
+        let invisible = invisible(&objects)?;
+        let (seen, invisible): (Vec<_>, Vec<_>) =
+            objects.into_iter().partition(|o| invisible.binary_search(&o.name).is_err());
         let mut materials = Vec::new();
         let mut first_material = Vec::new();
         let mut names = Vec::new();
@@ -123,7 +123,7 @@ impl Scene {
             shapes.push(object.object);
         }
         let ray_costs = shapes.iter().map(ray_cost).collect();
-        Ok(Self {
+        let mut scene = Self {
             ray_costs,
             aggregate: Aggregate::new(shapes),
             names,
@@ -134,9 +134,30 @@ impl Scene {
             background: Background::Constant(Rgb::ZERO),
             ambient: Rgb::ZERO,
             lights: Vec::new(),
-            medium: IndexOfRefraction::AIR,
-            absorption: Absorption::NONE,
-        })
+            medium: Medium::AIR,
+            camera_medium: None,
+            overlaps: Overlaps::default(),
+        };
+        scene.overlaps =
+            Overlaps::new(&scene.aggregate, |id| scene.materials_of(id), &scene.names, |_| true)?;
+        Ok(scene)
+    }
+
+    /// Pairs of solids of glass that may share a point, each as (lower, higher) by id, where rays count what they are in.
+    pub fn overlapping_solids(&self) -> Vec<(u32, u32)> {
+        if self.overlaps.depth == 0 {
+            return vec![];
+        }
+        let others = |(id, solid): (u32, &Option<crate::overlaps::Solid>)| {
+            let others = solid.as_ref().map_or(vec![], |solid| solid.solids.clone());
+            others.into_iter().filter(move |other| *other > id).map(move |other| (id, other))
+        };
+        (0u32..).zip(&self.overlaps.solids).flat_map(others).collect()
+    }
+
+    /// Which solids reach into each other.
+    pub(crate) fn overlaps(&self) -> &Overlaps {
+        &self.overlaps
     }
 
     /// Shapes and what rays find of them.
@@ -186,30 +207,18 @@ impl Scene {
         self.material(hit.object, hit.face).scattering(&mut place)
     }
 
-    /// The medium behind a face of an object, on the side that its normal points to or on the other one; `None` where the
-    /// material does not say.
-    pub(crate) fn medium_beside(&self, object: u32, face: u32, inside: bool) -> Option<Medium> {
+    /// The places of the materials of an object among [all](Self::materials).
+    pub(crate) fn materials_at(&self, object: u32) -> std::ops::Range<usize> {
         let first = self.first_material[object as usize];
-        let count = self.materials_of(object).len();
-        let number = self.aggregate.objects()[object as usize].material_of(face) as usize;
-        let material = first + number.min(count - 1);
-        self.materials[material].media()?;
-        u32::try_from(2 * material + usize::from(inside)).ok().map(Medium)
+        first..first + self.materials_of(object).len()
     }
 
-    /// What a medium absorbs.
-    pub(crate) fn absorption_of(&self, medium: Medium) -> &Absorption {
-        let Medium(place) = medium;
-        match self.materials.get(place as usize / 2).and_then(Material::media) {
-            Some(media) => {
-                if place % 2 == 1 {
-                    &media.inside
-                } else {
-                    &media.outside
-                }
-            }
-            None => &self.absorption,
-        }
+    /// The place of the material of a face of an object among [all](Self::materials).
+    #[inline]
+    pub(crate) fn material_at(&self, object: u32, face: u32) -> usize {
+        let first = self.first_material[object as usize];
+        let number = self.aggregate.objects()[object as usize].material_of(face) as usize;
+        first + number.min(self.materials_of(object).len() - 1)
     }
 
     /// The smooth glass that a point lies in: an object whose surface a ray from there meets from behind, where rays in all of
@@ -244,6 +253,23 @@ impl Scene {
         let end = self.first_material.get(object + 1).copied().unwrap_or(self.materials.len());
         &self.materials[self.first_material[object]..end]
     }
+}
+
+/// The names of the objects that nothing can see, sorted as the objects are: crossing their surfaces changes nothing, and what surrounds
+/// them is what their materials say.
+fn invisible(objects: &[SceneObject]) -> Result<Vec<String>, SceneError> {
+    let is_candidate = |o: &SceneObject| o.materials.iter().all(Material::is_invisible);
+    if !objects.iter().any(is_candidate) {
+        return Ok(vec![]);
+    }
+    let names: Vec<String> = objects.iter().map(|o| o.name.clone()).collect();
+    let aggregate = Aggregate::new(objects.iter().map(|o| o.object.clone()).collect());
+    let materials_of = |id: u32| objects[id as usize].materials.as_slice();
+    let overlaps =
+        Overlaps::new(&aggregate, materials_of, &names, |id| !is_candidate(&objects[id as usize]))?;
+    let takes_place = |id: usize| overlaps.solids[id].as_ref().is_some_and(|solid| !solid.knows);
+    let unseen = (0..objects.len()).filter(|id| is_candidate(&objects[*id]) && !takes_place(*id));
+    Ok(unseen.map(|id| names[id].clone()).collect())
 }
 
 /// A fit to the time of rays inside meshes of 300, 16 000 and 100 000 triangles: 1.0, 1.7 and 2.9 times as long as that of rays

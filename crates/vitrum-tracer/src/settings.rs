@@ -70,6 +70,8 @@ pub struct NoSkip {
     pub ambient: bool,
     /// Clear media absorb nothing, segment by segment.
     pub absorption: bool,
+    /// Rays count the solids that they are in where none reach into each other.
+    pub nested_media: bool,
     /// Shadow rays look for sheets that light goes through.
     pub thin_sheets: bool,
     /// Objects stand in a tree, however few they are.
@@ -86,6 +88,7 @@ impl NoSkip {
         lights: true,
         ambient: true,
         absorption: true,
+        nested_media: true,
         thin_sheets: true,
         object_tree: true,
         solids: true,

@@ -27,6 +27,18 @@ pub struct Stats {
     pub guarded: u64,
     /// Hits where an interpolated normal put a direction on the wrong side, so that the geometric normal was used.
     pub normal_fallbacks: u64,
+    /// Surfaces of solids that were passed straight, because another solid fills both sides.
+    pub passed: u64,
+    /// Surfaces of solids that were crossed together with another one, because they are the same but for rounding.
+    pub merged: u64,
+    /// Surfaces of solids near the origin of a ray that were ignored, because the ray has crossed them already.
+    pub contradictions: u64,
+    /// Solids that were left without having been entered.
+    pub unmatched_exits: u64,
+    /// Solids that were not counted, because a ray was in eight others.
+    pub overfull: u64,
+    /// Rays that were given up on their way straight through solids.
+    pub unending: u64,
     /// Rare events of the ray queries.
     pub geometry: Counters,
     /// Of features, in builds that count them: see [`Stats::uses_of`].
@@ -96,6 +108,12 @@ impl Stats {
         self.deepest = self.deepest.max(other.deepest);
         self.guarded += other.guarded;
         self.normal_fallbacks += other.normal_fallbacks;
+        self.passed += other.passed;
+        self.merged += other.merged;
+        self.contradictions += other.contradictions;
+        self.unmatched_exits += other.unmatched_exits;
+        self.overfull += other.overfull;
+        self.unending += other.unending;
         self.geometry.merge(&other.geometry);
         self.uses.merge(&other.uses);
         self.dropped += other.dropped;

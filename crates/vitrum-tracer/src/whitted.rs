@@ -2,27 +2,31 @@
 //! both children of a dielectric are followed, each with the material's own coefficient. The tree ends where a coefficient is
 //! zero, at the depth limit, and where weights fall below the cut-off. What ends early is counted.
 
-use crate::direct::direct;
+use crate::direct::{Way, direct};
 use crate::feature::Feature;
-use crate::ray_tree::{Children, Node};
-use crate::walker::{Policy, Walker, shading_normal, side};
+use crate::walker::{ChildrenOf, NodeOf, Policy, Walker, shading_normal, side};
+use crate::whereabouts::Whereabouts;
+use std::marker::PhantomData;
 use vitrum_bxdf::Sample;
 use vitrum_geometry::{Side, SurfaceInteraction};
 use vitrum_materials::Scattering;
 use vitrum_math::{Frame, Rgb, SampleAddress};
 
-/// The whole ray tree.
-pub(crate) struct Whitted<const ABSORPTION: bool>;
+/// The whole ray tree, whose rays remember `W` of media.
+pub(crate) struct Whitted<W>(PhantomData<W>);
 
-impl<const ABSORPTION: bool> Policy for Whitted<ABSORPTION> {
+impl<W: Whereabouts> Policy for Whitted<W> {
     type Memory = ();
+
+    type Media = W;
 
     const ROOT: () = ();
 
     #[inline(always)]
     fn can(feature: Feature) -> bool {
         match feature {
-            Feature::Absorption => ABSORPTION,
+            Feature::Absorption => W::KNOWS_MEDIUM,
+            Feature::NestedMedia => W::KNOWS_SOLIDS,
             _ => true,
         }
     }
@@ -30,30 +34,36 @@ impl<const ABSORPTION: bool> Policy for Whitted<ABSORPTION> {
     #[inline]
     fn hit(
         walker: &mut Walker<'_, Self>,
-        node: &Node<()>,
+        node: &NodeOf<Self>,
         surface: &SurfaceInteraction,
         scattering: &Scattering,
+        beyond: &W,
         _: &SampleAddress,
-        children: &mut Children<'_, ()>,
+        children: &mut ChildrenOf<'_, Self>,
     ) -> Rgb {
         let local = walker.local_light(node, surface, scattering);
         if let Some(body) = scattering.specular() {
             let (split, frame) = walker.split(surface, body);
             if let Some(child) = &split.reflected {
-                walker.follow(node, surface, &frame, child, children);
+                walker.follow(node, surface, &frame, child, beyond, children);
             }
             if let Some(child) = &split.transmitted {
-                walker.follow(node, surface, &frame, child, children);
+                walker.follow(node, surface, &frame, child, beyond, children);
             }
         }
         local
     }
 }
 
-impl<const ABSORPTION: bool> Walker<'_, Whitted<ABSORPTION>> {
+impl<W: Whereabouts> Walker<'_, Whitted<W>> {
     /// Emission, ambient light, and light from the lights.
     #[inline]
-    fn local_light(&mut self, node: &Node<()>, surface: &SurfaceInteraction, scattering: &Scattering) -> Rgb {
+    fn local_light(
+        &mut self,
+        node: &NodeOf<Whitted<W>>,
+        surface: &SurfaceInteraction,
+        scattering: &Scattering,
+    ) -> Rgb {
         let mut local = Rgb::ZERO;
         if surface.front {
             local += scattering.emitted;
@@ -65,10 +75,11 @@ impl<const ABSORPTION: bool> Walker<'_, Whitted<ABSORPTION>> {
         if self.needs(Feature::Lights) && scattering.answers_lights() {
             self.stats.uses.count(Feature::Lights);
             let normal = shading_normal(surface);
-            let medium = self.needs(Feature::Absorption).then(|| self.medium(node, surface, Side::Incident));
-            let medium = medium.map(|medium| *self.scene.absorption_of(medium));
-            let (scene, shadow) = (self.scene, self.settings.shadow);
-            local += direct(scene, shadow, medium, surface, normal, scattering, &mut self.stats);
+            let absorbs = self.needs(Feature::Absorption);
+            let medium = absorbs.then(|| *self.absorption(node, surface, Side::Incident, &W::START));
+            let from = self.knows_solids().then_some(&node.media);
+            let way = Way { nested: self.nested(), shadow: self.settings.shadow, from, medium };
+            local += direct(&way, surface, normal, scattering, &mut self.stats);
         }
         local
     }
@@ -77,11 +88,12 @@ impl<const ABSORPTION: bool> Walker<'_, Whitted<ABSORPTION>> {
     #[inline]
     fn follow(
         &mut self,
-        parent: &Node<()>,
+        parent: &NodeOf<Whitted<W>>,
         surface: &SurfaceInteraction,
         frame: &Frame,
         child: &Sample<f64>,
-        children: &mut Children<'_, ()>,
+        beyond: &W,
+        children: &mut ChildrenOf<'_, Whitted<W>>,
     ) {
         let throughput = parent.throughput * child.weight;
         let eta_squared = parent.eta_squared * (child.eta * child.eta);
@@ -104,6 +116,6 @@ impl<const ABSORPTION: bool> Walker<'_, Whitted<ABSORPTION>> {
         next.throughput = throughput;
         next.eta_squared = eta_squared;
         next.depth = depth;
-        next.medium = self.medium(parent, surface, side);
+        next.media = self.media(parent, surface, side, beyond);
     }
 }

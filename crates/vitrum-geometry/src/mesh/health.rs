@@ -18,6 +18,7 @@
 //! Everything is done by sorting: n log n, and the same result everywhere.
 
 mod bodies;
+mod crossings;
 mod mend;
 mod nesting;
 mod surface;
@@ -59,12 +60,16 @@ pub enum Defect {
     /// A closed body that encloses a negative volume and lies inside no other: its faces are turned inside
     /// out.
     InsideOut,
+    /// A vertex that no face uses; looked for by [`examine`] alone, as is what follows.
+    UnusedVertex,
+    /// A face that another one of the mesh goes through.
+    CrossingFace,
 }
 
 /// Where something is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
-    /// The vertex ([`Defect::NonFiniteVertex`]) or the lowest face concerned.
+    /// The vertex ([`Defect::NonFiniteVertex`], [`Defect::UnusedVertex`]) or the lowest face concerned.
     pub index: usize,
     /// The vertex, the middle of the edge, or the centroid of the face. Not finite where the mesh has no such
     /// point.
@@ -120,8 +125,31 @@ pub struct Health {
 /// Examines a mesh. Accepts anything, broken indices included; never panics.
 #[must_use]
 pub fn health(data: &MeshData) -> Health {
+    found(&Surface::new(data), Tally::default())
+}
+
+/// The same, and looks for faces that cross others, which takes as long again as everything else, and for vertices that no face uses.
+#[must_use]
+pub fn examine(data: &MeshData) -> Health {
     let surface = Surface::new(data);
     let mut tally = Tally::default();
+    let mut used = vec![false; data.positions.len()];
+    for index in data.triangles.iter().flatten() {
+        if let Some(used) = used.get_mut(*index as usize) {
+            *used = true;
+        }
+    }
+    for (index, _) in used.iter().enumerate().filter(|(_, used)| !**used) {
+        tally.add(Defect::UnusedVertex, Place { index, position: data.positions[index] });
+    }
+    for face in crossings::crossing_faces(&surface) {
+        tally.add(Defect::CrossingFace, surface.place(face));
+    }
+    found(&surface, tally)
+}
+
+fn found(surface: &Surface<'_>, mut tally: Tally) -> Health {
+    let data = surface.data;
     for (index, &position) in data.positions.iter().enumerate() {
         if !position.is_finite() {
             tally.add(Defect::NonFiniteVertex, Place { index, position });
@@ -148,7 +176,7 @@ pub fn health(data: &MeshData) -> Health {
         };
         tally.add(defect, surface.edge_place(&edge[0]));
     }
-    let components = Bodies::new(&surface).components;
+    let components = Bodies::new(surface).components;
     for body in components.iter().filter(|body| body.is_inside_out()) {
         tally.add(Defect::InsideOut, body.first);
     }
@@ -177,6 +205,22 @@ impl Health {
     pub fn is_closed(&self) -> bool {
         let usable = self.unusable == 0 && self.count(Defect::IndexOutOfRange) == 0;
         usable && !self.components.is_empty() && self.components.iter().all(Component::is_solid)
+    }
+
+    /// True where two solid bodies of positive volume are so near that one may reach into the other, as far as their boxes tell.
+    #[must_use]
+    pub fn bodies_may_overlap(&self) -> bool {
+        let is_filled = |body: &&Component| body.is_solid() && body.volume > 0.0;
+        let filled: Vec<&Component> = self.components.iter().filter(is_filled).collect();
+        let touch = |a: &Component, b: &Component| {
+            a.bounds.0.cmple(b.bounds.1).all() && b.bounds.0.cmple(a.bounds.1).all()
+        };
+        let mut order = filled;
+        order.sort_by(|a, b| a.bounds.0.x.total_cmp(&b.bounds.0.x));
+        order.iter().enumerate().any(|(i, a)| {
+            let near = order[i + 1..].iter().take_while(|b| b.bounds.0.x <= a.bounds.1.x);
+            near.into_iter().any(|b| touch(a, b))
+        })
     }
 
     /// How often a defect occurs.
@@ -257,10 +301,16 @@ impl fmt::Display for Finding {
             Defect::NonManifoldEdge => counted(self.count, "edge") + " of more than two faces",
             Defect::ClashingEdge => counted(self.count, "edge") + " of clashing winding",
             Defect::InsideOut => counted_as(self.count, "inside-out body", "inside-out bodies"),
+            Defect::UnusedVertex => {
+                counted_as(self.count, "vertex that no face uses", "vertices that no face uses")
+            }
+            Defect::CrossingFace => {
+                counted_as(self.count, "face that another goes through", "faces that others go through")
+            }
         };
         write!(f, "{what} (first ")?;
         match self.defect {
-            Defect::NonFiniteVertex => write!(f, "is vertex {})", self.first.index),
+            Defect::NonFiniteVertex | Defect::UnusedVertex => write!(f, "is vertex {})", self.first.index),
             Defect::IndexOutOfRange => write!(f, "is face {})", self.first.index),
             _ => write!(f, "{})", self.first),
         }

@@ -11,7 +11,7 @@ mod triangle_mesh;
 mod tests;
 
 pub use data::{MeshData, Triangle};
-pub use health::{Component, Defect, Finding, Health, Mended, Place, Remedy, health, mend};
+pub use health::{Component, Defect, Finding, Health, Mended, Place, Remedy, examine, health, mend};
 pub use normals::{flat_normals, smooth_normals};
 pub(crate) use search::{AnyHit, ClosestHit};
 pub(crate) use triangle_mesh::MeshPoint;

@@ -15,6 +15,8 @@ use vitrum_math::{Bounds, DVec2, DVec3, Ray, Vec3, gamma};
 pub struct TriangleMesh {
     pub(super) frame: UnitFrame,
     bounds: Bounds,
+    open: bool,
+    overlaps_itself: bool,
     /// Corner positions in the unit frame.
     vertices: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
@@ -187,6 +189,8 @@ impl TriangleMesh {
         Ok(Self {
             frame,
             bounds,
+            open: false,
+            overlaps_itself: false,
             vertices,
             triangles,
             normals,
@@ -196,6 +200,41 @@ impl TriangleMesh {
             materials,
             tree,
         })
+    }
+
+    /// The same mesh, said to be open: it has no inside. A mesh is taken to be closed otherwise, for to find out costs more than to
+    /// prepare it (see [`health`](super::health)).
+    #[must_use]
+    pub fn left_open(self) -> Self {
+        Self { open: true, ..self }
+    }
+
+    /// True when it was said to be open.
+    pub fn is_open(&self) -> bool {
+        self.open
+    }
+
+    /// The same mesh, said to have bodies that may reach into each other: within, its surface winds around more than once.
+    #[must_use]
+    pub fn with_bodies_that_overlap(self) -> Self {
+        Self { overlaps_itself: true, ..self }
+    }
+
+    /// True when bodies of it were said to reach into each other.
+    pub fn overlaps_itself(&self) -> bool {
+        self.overlaps_itself
+    }
+
+    /// False where none of its triangles has a point of a box, given in its own units.
+    pub(crate) fn may_meet(&self, bounds: &Bounds) -> bool {
+        let around = |face: u32| Bounds::around(self.triangle(face));
+        self.bounds.touches(bounds)
+            && (0..self.triangle_count() as u32).any(|face| around(face).touches(bounds))
+    }
+
+    /// What one is in its unit frame, in its own units: between its largest extent and twice that.
+    pub(crate) fn unit(&self) -> f64 {
+        1.0 / self.frame.scale()
     }
 
     /// Looks at the vertices alone: what comes before any arithmetic with them.

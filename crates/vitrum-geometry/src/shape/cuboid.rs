@@ -38,6 +38,11 @@ impl Cuboid {
         Bounds { min: self.min, max: self.max }
     }
 
+    /// True for points inside, not on its sides.
+    pub(crate) fn holds(&self, point: DVec3) -> bool {
+        self.min.cmplt(point).all() && point.cmplt(self.max).all()
+    }
+
     /// Where the line of `ray` crosses the box.
     #[inline]
     pub fn crossings(&self, ray: &Ray, leaving: Option<Leaving>) -> Crossings {

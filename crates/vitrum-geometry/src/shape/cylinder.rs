@@ -52,6 +52,13 @@ impl Cylinder {
         disk(self.bottom).union(disk(top))
     }
 
+    /// True for points inside, not on its surface.
+    pub(crate) fn holds(&self, point: DVec3) -> bool {
+        let offset = point - self.bottom;
+        let along = offset.dot(self.axis);
+        along > 0.0 && along < self.height && (offset - self.axis * along).length() < self.radius
+    }
+
     /// Where the line of `ray` crosses the cylinder.
     #[inline]
     pub fn crossings(&self, ray: &Ray, leaving: Option<Leaving>) -> Crossings {

@@ -60,6 +60,13 @@ pub(super) fn lower(
     if let Err(reason) = lowering.matter.medium_of(&desc.surroundings) {
         lowering.problems.push(error(source, desc.surroundings.span, reason, "what surrounds everything"));
     }
+    let camera_medium = desc.camera.medium.as_ref().and_then(|name| match lowering.matter.medium_of(name) {
+        Ok(medium) => Some(medium),
+        Err(reason) => {
+            lowering.problems.push(error(source, name.span, reason, "where the camera stands"));
+            None
+        }
+    });
     for object in &desc.objects {
         if let scene::Shape::Mesh { file, normals, build, group, .. } = &lowering.original(object).shape {
             let needs_uvs = lowering.needs_uvs(object);
@@ -92,7 +99,7 @@ pub(super) fn lower(
         Some(Ok(mut scene)) => {
             scene.background = background;
             scene.medium = matter.medium;
-            scene.absorption = matter.absorption;
+            scene.camera_medium = camera_medium;
             (scene.ambient, scene.lights) = lights(desc, source, &scene, &mut problems);
             problems.sort();
             Ok(Loaded {

@@ -3,13 +3,14 @@
 use super::images::{Images, Refusal};
 use crate::diagnostic::{Diagnostic, Diagnostics, Source};
 use crate::obj::{MtlMap, MtlMaterial, MtlMeaning};
-use crate::scene::{self, ColourOrTexture, Index, MetalIndex, Model, Pattern, SceneDesc};
-use std::collections::BTreeMap;
+use crate::scene::{self, Around, ColourOrTexture, Index, MetalIndex, Model, Pattern, SceneDesc};
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-use vitrum_bxdf::{ComplexIndex, Conductor, Ggx, Interface, ThinDielectric};
+use vitrum_bxdf::{ComplexIndex, Conductor, Ggx, ThinDielectric};
 use vitrum_materials::{
-    Absorption, Axes, Checker, Dielectric, Filter, ImageTexture, IndexOfRefraction, Material, Media, Phong,
-    Texture, Transparent, Wrap,
+    Absorption, Axes, Checker, Dielectric, Filter, ImageTexture, IndexOfRefraction, Material, Media, Medium,
+    NamedMedium, Phong, Texture, Transparent, Wrap,
 };
 use vitrum_math::Rgb;
 
@@ -19,16 +20,16 @@ const MODEL_KT: f64 = 0.9;
 
 /// The values behind the names of a scene.
 pub(super) struct Matter<'d> {
-    media: BTreeMap<&'d str, (f64, scene::Absorption)>,
+    media: BTreeMap<&'d str, Result<Medium, String>>,
+    /// Those of them that the scene declares or uses.
+    used: RefCell<BTreeSet<String>>,
     textures: BTreeMap<&'d str, &'d scene::Texture>,
     images: Images,
     /// Where files are looked for.
     folder: &'d Path,
     materials: BTreeMap<&'d str, &'d scene::Material>,
     /// What surrounds everything.
-    pub(super) medium: IndexOfRefraction,
-    /// What that absorbs.
-    pub(super) absorption: Absorption,
+    pub(super) medium: Medium,
 }
 
 /// Where problems are told.
@@ -54,15 +55,15 @@ impl From<String> for Flaw {
 impl<'d> Matter<'d> {
     /// Of a description, whose files are looked for in `folder`.
     pub(super) fn new(desc: &'d SceneDesc, folder: &'d Path) -> Self {
-        let clear = scene::Absorption::Clear;
-        let predefined = scene::schema::PREDEFINED_MEDIA.iter().map(|&(name, ior)| (name, (ior, clear)));
-        let declared = desc.media.iter().map(|m| (m.name.text.as_str(), (m.ior, m.absorption)));
-        let media: BTreeMap<_, _> = predefined.chain(declared).collect();
-        let around = media.get(desc.surroundings.text.as_str()).and_then(|medium| valid(medium).ok());
-        let (medium, absorption) = around.unwrap_or((IndexOfRefraction::AIR, Absorption::NONE));
+        let named = NamedMedium::ALL.iter().map(|named| (named.name, Ok(named.medium)));
+        let declared = desc.media.iter().map(|m| (m.name.text.as_str(), valid(m.ior, m.absorption)));
+        let media: BTreeMap<_, _> = named.chain(declared).collect();
+        let around = desc.surroundings.text.as_str();
+        let medium = media.get(around).and_then(|medium| medium.clone().ok()).unwrap_or(Medium::AIR);
+        let used = desc.media.iter().map(|m| m.name.text.clone()).chain([around.to_owned()]).collect();
         Self {
             medium,
-            absorption,
+            used: RefCell::new(used),
             textures: desc.textures.iter().map(|t| (t.name.text.as_str(), t)).collect(),
             images: Images::default(),
             folder,
@@ -80,9 +81,11 @@ impl<'d> Matter<'d> {
         &self.images
     }
 
-    /// All media by name.
-    pub(super) fn media(&self) -> Vec<(String, f64)> {
-        self.media.iter().map(|(name, (ior, _))| ((*name).to_owned(), *ior)).collect()
+    /// The media that the scene declares or uses, by name.
+    pub(super) fn media(&self) -> Vec<(String, Medium)> {
+        let used = self.used.borrow();
+        let of_scene = self.media.iter().filter(|(name, _)| used.contains(**name));
+        of_scene.filter_map(|(name, m)| Some(((*name).to_owned(), *m.as_ref().ok()?))).collect()
     }
 
     /// The material of that name.
@@ -161,34 +164,47 @@ impl<'d> Matter<'d> {
         Err(Flaw::Told)
     }
 
-    /// The medium of that name: its index, and what it absorbs.
-    pub(super) fn medium_of(&self, name: &scene::Name) -> Result<(IndexOfRefraction, Absorption), String> {
+    /// The medium of that name.
+    pub(super) fn medium_of(&self, name: &scene::Name) -> Result<Medium, String> {
+        self.used.borrow_mut().insert(name.text.clone());
         let known = self.media.get(name.text.as_str());
-        valid(known.ok_or_else(|| format!("there is no medium `{}`", name.text))?)
+        known.cloned().unwrap_or_else(|| Err(format!("there is no medium `{}`", name.text)))
     }
 
     /// The medium of that name, or the scene's.
-    fn outside(&self, name: Option<&scene::Name>) -> Result<(IndexOfRefraction, Absorption), String> {
-        name.map_or(Ok((self.medium, self.absorption)), |name| self.medium_of(name))
+    fn outside(&self, name: Option<&scene::Name>) -> Result<Medium, String> {
+        name.map_or(Ok(self.medium), |name| self.medium_of(name))
+    }
+
+    /// The medium that is around glass, or that its index is relative to.
+    fn around(&self, around: &Around) -> Result<Medium, String> {
+        match around {
+            Around::Anything { .. } => Ok(self.medium),
+            Around::Medium(name) => self.medium_of(name),
+        }
+    }
+
+    /// What the surface of glass divides.
+    fn divided(&self, around: &Around, inside: Medium) -> Result<Media, String> {
+        Ok(match around {
+            Around::Anything { priority } => Media::solid(self.medium, inside, *priority),
+            Around::Medium(name) => Media::new(self.medium_of(name)?, inside),
+        })
     }
 
     fn dielectric(
         &self,
         inside: &Index,
-        outside: Option<&scene::Name>,
+        around: &Around,
         roughness: f64,
         absorbed: scene::Absorption,
     ) -> Result<Dielectric, String> {
-        let (above, outside) = self.outside(outside)?;
-        let (interface, inside) = match inside {
-            Index::Absolute(n) => (between(above, IndexOfRefraction::new(*n))?, absorption(absorbed)?),
-            Index::Relative(ratio) => (between(above, above.times(*ratio))?, absorption(absorbed)?),
-            Index::Medium(name) => {
-                let (below, inside) = self.medium_of(name)?;
-                (between(above, Ok(below))?, inside)
-            }
+        let inside = match inside {
+            Index::Absolute(n) => valid(*n, absorbed)?,
+            Index::Relative(ratio) => relative(self.around(around)?, *ratio, absorbed)?,
+            Index::Medium(name) => self.medium_of(name)?,
         };
-        Ok(Dielectric::new(interface, ggx(roughness)?, Media { outside, inside }))
+        Ok(Dielectric::new(self.divided(around, inside)?, ggx(roughness)?))
     }
 
     fn phong(&mut self, p: &scene::Phong, told: &mut Told<'_>) -> Result<Phong, Flaw> {
@@ -219,29 +235,27 @@ impl<'d> Matter<'d> {
                 Material::Reflective { phong: self.phong(phong, told)?, kr: *kr }
             }
             Model::Emissive { radiance } => Material::Emissive { radiance: self.texture(radiance, told)? },
-            Model::Transparent { phong, kr, kt, ior, outside } => {
-                let (above, outside) = self.outside(outside.as_ref())?;
-                let interface = between(above, above.times(*ior))?;
-                let media = Media { outside, inside: Absorption::NONE };
+            Model::Transparent { phong, kr, kt, ior, around } => {
+                let inside = relative(self.around(around)?, *ior, scene::Absorption::Clear)?;
+                let media = self.divided(around, inside)?;
                 Material::Transparent(Transparent {
                     phong: self.phong(phong, told)?,
                     kr: *kr,
                     kt: *kt,
-                    interface,
                     media,
                 })
             }
-            Model::Dielectric { inside, outside, roughness, compensation, absorption } => {
-                let glass = self.dielectric(inside, outside.as_ref(), *roughness, *absorption)?;
+            Model::Dielectric { inside, around, roughness, compensation, absorption } => {
+                let glass = self.dielectric(inside, around, *roughness, *absorption)?;
                 Material::Dielectric(if *compensation { glass } else { glass.single_scattering() })
             }
             Model::Thin { ior, outside, transmittance } => {
-                let (above, _) = self.outside(outside.as_ref())?;
-                let interface = between(above, IndexOfRefraction::new(*ior))?;
+                let sheet = valid(*ior, scene::Absorption::Clear)?;
+                let interface = *Media::new(self.outside(outside.as_ref())?, sheet).interface();
                 Material::Thin(ThinDielectric { interface, transmittance: *transmittance })
             }
             Model::Conductor { index, outside, roughness } => {
-                let (above, _) = self.outside(outside.as_ref())?;
+                let above = self.outside(outside.as_ref())?.index;
                 let (n, k) = match *index {
                     MetalIndex::Named(metal) => (metal.n(), metal.k()),
                     MetalIndex::Given { n, k } => (n, k),
@@ -281,8 +295,8 @@ impl<'d> Matter<'d> {
                 phong: Phong::NONE,
                 kr: Rgb::splat(MODEL_KR),
                 kt: tint * MODEL_KT,
-                interface: between(self.medium, self.medium.times(ior))?,
-                media: Media { outside: self.absorption, inside: Absorption::NONE },
+                media: self
+                    .divided(&Around::default(), relative(self.medium, ior, scene::Absorption::Clear)?)?,
             }),
         })
     }
@@ -335,17 +349,16 @@ impl<'d> Matter<'d> {
     }
 }
 
-/// The interface between two media. Relative indices have been made absolute by now, so that they have no history.
-fn between(
-    above: IndexOfRefraction,
-    below: Result<IndexOfRefraction, vitrum_materials::InvalidIndex>,
-) -> Result<Interface<f64>, String> {
-    let below = below.map_err(|e| e.to_string())?;
-    Interface::new(above.value(), below.value()).map_err(|e| e.to_string())
+/// A medium that absorbs.
+fn valid(ior: f64, absorbed: scene::Absorption) -> Result<Medium, String> {
+    let index = IndexOfRefraction::new(ior).map_err(|e| e.to_string())?;
+    Ok(Medium { index, absorption: absorption(absorbed)? })
 }
 
-fn valid(&(ior, absorbed): &(f64, scene::Absorption)) -> Result<(IndexOfRefraction, Absorption), String> {
-    Ok((IndexOfRefraction::new(ior).map_err(|e| e.to_string())?, absorption(absorbed)?))
+/// A medium whose index is relative to another. It is made absolute here, so that it has no history.
+fn relative(to: Medium, ratio: f64, absorbed: scene::Absorption) -> Result<Medium, String> {
+    let index = to.index.times(ratio).map_err(|e| e.to_string())?;
+    Ok(Medium { index, absorption: absorption(absorbed)? })
 }
 
 fn absorption(described: scene::Absorption) -> Result<Absorption, String> {

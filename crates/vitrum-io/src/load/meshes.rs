@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use vitrum_geometry::mesh::{
-    Build, MeshData, MeshError, TriangleMesh, flat_normals, health, mend, smooth_normals,
+    Build, MeshData, MeshError, TriangleMesh, examine, flat_normals, health, mend, smooth_normals,
 };
 
 /// What a mesh of a scene is like.
@@ -67,6 +67,8 @@ pub(super) struct Meshes {
     read: Vec<(PathBuf, u64)>,
     /// What is still to be prepared.
     announced: BTreeMap<Wanted, NeedsUvs>,
+    /// Whether meshes are looked through at length.
+    examine: bool,
     prepared: BTreeMap<Wanted, Result<Vec<Prepared>, PrepareError>>,
 }
 
@@ -101,10 +103,15 @@ impl PrepareError {
 }
 
 impl Meshes {
+    /// Nothing yet.
+    pub(super) fn new(examine: bool) -> Self {
+        Self { examine, ..Self::default() }
+    }
+
     /// With a file that has been read already.
-    pub(super) fn holding(path: &Path, file: ObjFile) -> Self {
+    pub(super) fn holding(self, path: &Path, file: ObjFile) -> Self {
         let read = vec![(path.to_owned(), hash_of_materials(&file))];
-        Self { files: BTreeMap::from([(path.to_owned(), (file, true))]), read, ..Self::default() }
+        Self { files: BTreeMap::from([(path.to_owned(), (file, true))]), read, ..self }
     }
 
     /// The files that were read, each with a hash of its materials, which may come from other files.
@@ -178,7 +185,7 @@ impl Meshes {
         })?;
         let prepared: Result<Vec<_>, _> = parts
             .into_iter()
-            .map(|part| prepare(path, part, &materials, normals, build, needs_uvs))
+            .map(|part| prepare(path, part, &materials, normals, build, needs_uvs, self.examine))
             .collect();
         prepared.map_err(|reason| PrepareError::Mesh { path: path.to_owned(), reason })
     }
@@ -246,6 +253,7 @@ fn prepare(
     normals: Normals,
     build: Build,
     needs_uvs: NeedsUvs,
+    at_length: bool,
 ) -> Result<Prepared, MeshError> {
     let mut data = part.mesh;
     TriangleMesh::check_positions(&data)?;
@@ -268,13 +276,15 @@ fn prepare(
         (data.uvs, data.uv_triangles) = (Vec::new(), Vec::new());
     }
     let (data, mended) = mend(data);
-    let health = health(&data);
+    let health = if at_length { examine(&data) } else { health(&data) };
     let data = match normals {
         Normals::File => data,
         Normals::Flat => flat_normals(data),
         Normals::Smooth => smooth_normals(data),
     };
     let mesh = TriangleMesh::with_build(data, build)?;
+    let mesh = if health.is_closed() { mesh } else { mesh.left_open() };
+    let mesh = if health.bodies_may_overlap() { mesh.with_bodies_that_overlap() } else { mesh };
     let report = MeshReport {
         object: String::new(),
         file: path.to_owned(),

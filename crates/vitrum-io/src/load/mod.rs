@@ -29,6 +29,7 @@ use crate::scene::{self, SceneDesc};
 use std::fs;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
+use vitrum_materials::Medium;
 use vitrum_tracer::{Scene, Settings};
 
 /// A scene ready to render, and what was noticed on the way.
@@ -42,8 +43,8 @@ pub struct Loaded {
     pub display: Display,
     /// What the meshes are like.
     pub meshes: Vec<MeshReport>,
-    /// Names and absolute indices of the media that the scene declares or uses.
-    pub media: Vec<(String, f64)>,
+    /// The media that the scene declares or uses, by name.
+    pub media: Vec<(String, Medium)>,
     /// What it was made of.
     pub origin: Origin,
     /// Warnings.
@@ -56,6 +57,8 @@ pub struct SceneOptions {
     /// Texels of environments that are no radiance are replaced, and told in a warning, where they are an error otherwise: what
     /// is not a number or negative by 0, what is infinite by the largest finite value of the picture.
     pub repair: bool,
+    /// Meshes are looked through for faces that cross others and vertices that none uses, too.
+    pub examine: bool,
 }
 
 /// Why there is no scene.
@@ -130,7 +133,9 @@ fn described(name: &str, text: &str, folder: &Path, options: SceneOptions) -> Re
     let (desc, diagnostics) = scene::parse(name, text);
     let source = Source::new(name, text);
     match desc {
-        Some(desc) => lower::lower(&desc, &source, folder, Meshes::default(), diagnostics, options),
+        Some(desc) => {
+            lower::lower(&desc, &source, folder, Meshes::new(options.examine), diagnostics, options)
+        }
         None => Err(LoadError::Invalid(diagnostics)),
     }
 }
@@ -139,14 +144,13 @@ fn described(name: &str, text: &str, folder: &Path, options: SceneOptions) -> Re
 ///
 /// # Errors
 /// [`LoadError`] when the model can't be read or has nothing to show.
-pub fn model_file(path: &Path, options: &ModelOptions) -> Result<Loaded, LoadError> {
+pub fn model_file(path: &Path, options: &ModelOptions, how: SceneOptions) -> Result<Loaded, LoadError> {
     let file = obj::read(path)?;
     let desc = model::frame(path, &file, options)
         .map_err(|reason| LoadError::Unreadable { path: path.to_owned(), reason })?;
     let name = path.display().to_string();
-    let files = Meshes::holding(path, file);
-    let options = SceneOptions::default();
-    lower::lower(&desc, &Source::new(&name, ""), Path::new(""), files, Diagnostics::default(), options)
+    let files = Meshes::new(how.examine).holding(path, file);
+    lower::lower(&desc, &Source::new(&name, ""), Path::new(""), files, Diagnostics::default(), how)
 }
 
 /// Loads a scene that was described in code. Its files are looked for in `folder`.
@@ -155,7 +159,7 @@ pub fn model_file(path: &Path, options: &ModelOptions) -> Result<Loaded, LoadErr
 /// [`LoadError::Invalid`] with all problems.
 pub fn description(desc: &SceneDesc, folder: &Path) -> Result<Loaded, LoadError> {
     let (source, options) = (Source::new("scene", ""), SceneOptions::default());
-    lower::lower(desc, &source, folder, Meshes::default(), Diagnostics::default(), options)
+    lower::lower(desc, &source, folder, Meshes::new(options.examine), Diagnostics::default(), options)
 }
 
 /// A problem at a place of the source.

@@ -3,8 +3,8 @@
 use crate::diagnostic::Span;
 use crate::obj::{self, ObjFile};
 use crate::scene::{
-    Background, Camera, ColourOrTexture, Falloff, Lens, Light, LightKind, Material, MaterialChoice, Model,
-    Name, Normals, Object, Output, Pattern, Phong, Render, SceneDesc, Shape, Texture, Tone, Transform,
+    Around, Background, Camera, ColourOrTexture, Falloff, Lens, Light, LightKind, Material, MaterialChoice,
+    Model, Name, Normals, Object, Output, Pattern, Phong, Render, SceneDesc, Shape, Texture, Tone, Transform,
 };
 use std::path::Path;
 use vitrum_geometry::mesh::Build;
@@ -64,6 +64,7 @@ pub(super) fn frame(path: &Path, file: &ObjFile, options: &ModelOptions) -> Resu
         target_span: Span::default(),
         up: DVec3::Y,
         lens: Lens::Pinhole { fov: FOV },
+        medium: None,
     });
     // Light through a solid, around a bend, and out again.
     desc.render = Render { size: options.size, max_depth: Some(12), cutoff: 1e-2, ..Render::default() };
@@ -109,7 +110,7 @@ fn model(path: &Path, file: &ObjFile, options: &ModelOptions) -> Object {
             kr: Rgb::splat(0.1),
             kt: Rgb::splat(0.9),
             ior: options.ior,
-            outside: None,
+            around: Around::default(),
         }),
         ModelMaterial::Matte => {
             Some(Model::Matte { color: ColourOrTexture::Colour(Rgb::splat(0.6)), ka: 1.0, kd: 1.0 })

@@ -47,6 +47,24 @@ pub enum Index {
     Medium(Name),
 }
 
+/// What is around glass.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Around {
+    /// Whatever is there; where solids overlap, the one of the highest priority fills the space.
+    Anything {
+        /// 0 to 1000.
+        priority: i16,
+    },
+    /// This medium: the surface is an interface to it.
+    Medium(Name),
+}
+
+impl Default for Around {
+    fn default() -> Self {
+        Self::Anything { priority: 0 }
+    }
+}
+
 /// A colour that varies in space.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
@@ -146,15 +164,15 @@ pub enum Model {
         kt: Rgb,
         /// Index of refraction, inside over outside, 0.001 to 1000.
         ior: f64,
-        /// What `ior` is relative to; none is the scene's medium.
-        outside: Option<Name>,
+        /// What is around it, and what `ior` is relative to.
+        around: Around,
     },
     /// Clear by Fresnel's equations.
     Dielectric {
         /// What is inside.
         inside: Index,
-        /// What is outside; none is the scene's medium.
-        outside: Option<Name>,
+        /// What is around it.
+        around: Around,
         /// Alpha, 0 to 1.
         roughness: f64,
         /// Whether the energy of repeated scattering is made up for.

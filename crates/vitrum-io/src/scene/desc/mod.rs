@@ -12,7 +12,7 @@ mod picture;
 
 pub use light::{Falloff, Light, LightKind};
 pub use matter::{
-    Absorption, ColourOrTexture, Index, Material, Medium, MetalIndex, Model, Pattern, Phong, Texture,
+    Absorption, Around, ColourOrTexture, Index, Material, Medium, MetalIndex, Model, Pattern, Phong, Texture,
 };
 pub use object::{MaterialChoice, Normals, Object, Shape, Step, Transform};
 pub use picture::{Background, Branching, Camera, Filter, Integrator, Lens, Output, Render, Shadow, Tone};
@@ -32,7 +32,7 @@ pub struct SceneDesc {
     pub surroundings: Name,
     /// What a ray sees that meets nothing.
     pub background: Background,
-    /// Media beside [`PREDEFINED_MEDIA`](super::schema::PREDEFINED_MEDIA).
+    /// Media beside those that have [names](vitrum_materials::NamedMedium) anyway, or in their place.
     pub media: Vec<Medium>,
     /// Lights.
     pub lights: Vec<Light>,

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use vitrum_math::{DVec3, Rgb};
 
+use super::Name;
 use crate::diagnostic::Span;
 
 /// How the picture is computed. The default is the format's.
@@ -105,6 +106,8 @@ pub struct Camera {
     pub up: DVec3,
     /// How rays start.
     pub lens: Lens,
+    /// The medium that it stands in; none is what is found there.
+    pub medium: Option<Name>,
 }
 
 /// How camera rays start.

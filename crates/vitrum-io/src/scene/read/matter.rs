@@ -8,8 +8,8 @@ use vitrum_math::Rgb;
 
 use super::super::schema::{self, Realm, Table};
 use super::super::{
-    Absorption, ColourOrTexture, Index, Material, MaterialChoice, Medium, MetalIndex, Model, Object, Pattern,
-    Phong, Texture,
+    Absorption, Around, ColourOrTexture, Index, Material, MaterialChoice, Medium, MetalIndex, Model, Object,
+    Pattern, Phong, Texture,
 };
 use super::context::shorten;
 use super::{Context, Fields, Problem, Span, value};
@@ -162,18 +162,37 @@ fn transparent(fields: &mut Fields<'_, '_>) -> Option<Model> {
     let phong = phong(fields);
     let (kr, kt) = (fields.colour("kr"), fields.colour("kt"));
     let ior = fields.number("ior");
-    let outside = fields.reference("outside");
+    let around = around(fields);
     if let (Some(kr), Some(kt)) = (kr, kt) {
         warn_of_gain(fields, kr, kt);
     }
-    Some(Model::Transparent { phong: phong?, kr: kr?, kt: kt?, ior: ior?, outside })
+    Some(Model::Transparent { phong: phong?, kr: kr?, kt: kt?, ior: ior?, around: around? })
+}
+
+/// What is around glass: `outside`, or whatever is there, by `priority`.
+fn around(fields: &mut Fields<'_, '_>) -> Option<Around> {
+    let (outside, priority) = (fields.reference("outside"), fields.small_integer("priority"));
+    if fields.has("outside") && fields.has("priority") {
+        let message = "`priority` says nothing beside `outside`";
+        let problem = Problem::error(fields.span_of("priority"), message, "this has no effect");
+        let problem = problem.also(fields.span_of("outside"), "this says what is outside, whatever overlaps");
+        fields.cx.report(problem.help(
+            "leave out `outside` for a solid that may overlap others, or `priority` for an interface between two media",
+        ));
+    }
+    match outside {
+        Some(outside) => Some(Around::Medium(outside)),
+        None => priority.map(|priority| Around::Anything {
+            priority: i16::try_from(priority).expect("the declared range lies within i16"),
+        }),
+    }
 }
 
 fn dielectric(fields: &mut Fields<'_, '_>) -> Option<Model> {
     let absolute = fields.number("ior").map(Index::Absolute);
     let relative = fields.number("relative_ior").map(Index::Relative);
     let medium = fields.reference("inside").map(Index::Medium);
-    let outside = fields.reference("outside");
+    let around = around(fields);
     let roughness = fields.number("roughness");
     let compensation = fields.boolean("compensation");
     let absorption = absorption(fields);
@@ -206,7 +225,7 @@ fn dielectric(fields: &mut Fields<'_, '_>) -> Option<Model> {
     let inside = absolute.or(relative).or(medium);
     Some(Model::Dielectric {
         inside: inside?,
-        outside,
+        around: around?,
         roughness: roughness?,
         compensation: compensation?,
         absorption,

@@ -1,9 +1,10 @@
 //! Names are unique within their realm, and what is referred to exists.
 
 use super::super::Name;
-use super::super::schema::{PREDEFINED_MEDIA, Realm};
+use super::super::schema::Realm;
 use super::context::shorten;
 use super::{Context, Fields, Problem, suggest};
+use vitrum_materials::NamedMedium;
 
 /// Names listed in a help line.
 const LISTED: usize = 8;
@@ -19,7 +20,8 @@ impl Fields<'_, '_> {
 
 fn define(cx: &mut Context<'_>, realm: Realm, name: &Name) {
     let quoted = shorten(&name.text);
-    if realm == Realm::Medium && PREDEFINED_MEDIA.iter().any(|(medium, _)| *medium == name.text) {
+    // What is there in every scene may be taken to be something else, but not nothing.
+    if realm == Realm::Medium && ["air", "vacuum"].contains(&name.text.as_str()) {
         let problem =
             Problem::error(name.span, format!("the medium \"{quoted}\" is there already"), "predefined");
         cx.report(problem.help("leave this table out, or take another name"));
@@ -40,8 +42,7 @@ pub(super) fn resolve(cx: &mut Context<'_>) {
         return;
     }
     for (realm, name) in std::mem::take(&mut cx.used) {
-        let predefined =
-            PREDEFINED_MEDIA.iter().map(|(medium, _)| *medium).filter(|_| realm == Realm::Medium);
+        let predefined = NamedMedium::ALL.iter().map(|medium| medium.name).filter(|_| realm == Realm::Medium);
         let defined = cx.defined.get(&realm);
         let all = || {
             predefined.clone().chain(defined.into_iter().flat_map(|names| names.keys().map(String::as_str)))

@@ -104,8 +104,9 @@ pub(super) fn camera(cx: &mut Context<'_>, table: &DeTable<'_>, span: Span) -> O
         None => None,
     };
     let target_span = fields.span_of("target");
+    let medium = fields.reference("medium");
     fields.close();
-    Some(Camera { span, position: position?, target: target?, target_span, up: up?, lens: lens? })
+    Some(Camera { span, position: position?, target: target?, target_span, up: up?, lens: lens?, medium })
 }
 
 fn check_view(fields: &mut Fields<'_, '_>, position: DVec3, target: DVec3, up: Option<DVec3>) {

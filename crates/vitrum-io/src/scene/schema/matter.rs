@@ -9,11 +9,7 @@ pub const MEDIUM: Table = Table {
     header: "[[medium]]",
     noun: "a medium",
     keys: &[
-        Key::new(
-            "name",
-            Kind::Name,
-            "what refers to it; `air` and `vacuum`, both of ior 1, are there already",
-        ),
+        Key::new("name", Kind::Name, "what refers to it; those above are there already"),
         Key::new("ior", Kind::Number, "its index of refraction against vacuum")
             .range(Range::Closed(0.1, 10.0)),
         TRANSMITTANCE,
@@ -52,6 +48,14 @@ const ROUGHNESS: Key = Key::new(
 )
 .range(Range::Closed(0.0, 1.0))
 .default("0.0");
+
+const PRIORITY: Key = Key::new(
+    "priority",
+    Kind::Integer,
+    "where solids overlap, the highest fills the space; of equal ones, that whose name comes first",
+)
+.range(Range::Whole(0, 1000))
+.default("0");
 
 /// `[[texture]]`
 pub const TEXTURE: Table = Table {
@@ -172,8 +176,9 @@ const MODELS: Choice = Choice {
                     "index of refraction, inside over outside: 0.75 is air in water",
                 )
                 .range(Range::Closed(0.001, 1000.0)),
-                Key::new("outside", Kind::Reference(Realm::Medium), "the medium that `ior` is relative to")
-                    .or("`medium` of `[surroundings]`"),
+                Key::new("outside", Kind::Reference(Realm::Medium), "the medium outside, which `ior` is relative to: makes the surface an interface")
+                    .or("`medium` of `[surroundings]`, and whatever overlaps"),
+                PRIORITY,
             ],
         },
         Variant {
@@ -188,8 +193,9 @@ const MODELS: Choice = Choice {
                     .or("none"),
                 Key::new("inside", Kind::Reference(Realm::Medium), "the medium inside, with what it absorbs")
                     .or("none"),
-                Key::new("outside", Kind::Reference(Realm::Medium), "the medium outside")
-                    .or("`medium` of `[surroundings]`"),
+                Key::new("outside", Kind::Reference(Realm::Medium), "the medium outside: makes the surface an interface")
+                    .or("`medium` of `[surroundings]`, and whatever overlaps"),
+                PRIORITY,
                 ROUGHNESS,
                 Key::new(
                     "compensation",

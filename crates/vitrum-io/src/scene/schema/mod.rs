@@ -33,9 +33,6 @@ pub const TABLES: &[&Table] = &[
     &ROTATION,
 ];
 
-/// Media that every scene knows, with their index of refraction.
-pub const PREDEFINED_MEDIA: &[(&str, f64)] = &[("air", 1.0), ("vacuum", 1.0)];
-
 /// Largest magnitude of a coordinate and largest length, metres: beyond it, products of four of them leave f64's
 /// accuracy no room, and no glass is as large as the orbit of Mars.
 pub const FARTHEST: f64 = 1e12;

@@ -128,6 +128,8 @@ pub const CAMERA: Table = Table {
         Key::point("target", "the point in the middle of the picture; not where the camera stands"),
         Key::vector("up", "a direction that is up in the picture; not along the line of sight")
             .default("[0, 1, 0]"),
+        Key::new("medium", Kind::Reference(Realm::Medium), "the medium that the camera stands in")
+            .or("what is found there"),
     ],
     choice: Some(Choice {
         key: "type",
