@@ -7,6 +7,7 @@ mod constant_furnace;
 mod critical_angle;
 mod environment_light;
 mod estimate;
+mod explained;
 mod features;
 mod filters;
 mod invisible;

@@ -129,3 +129,41 @@ fn parts_that_share_a_name() {
     let report = place.succeed(&["inspect", "group.toml"]).stdout;
     assert!(report.contains("2 objects"), "{report}");
 }
+
+#[test]
+fn explain_tells_the_rays_of_a_pixel() {
+    let place = Workplace::new();
+    place.write("cube.obj", CUBE);
+    let told = place.succeed(&["explain", "cube.obj", "--size", "33x33", "--pixel", "16,16"]).stdout;
+    for phrase in [
+        "from the camera: weight 1, in air (1)",
+        "beyond is index 1.5, eta 1.5: reflects 0.1, transmits 0.9",
+        "\n    ",
+    ] {
+        assert!(told.contains(phrase), "{phrase}: {told}");
+    }
+    let short = place.succeed(&["explain", "cube.obj", "--pixel", "320,320", "--rays", "2"]).stdout;
+    assert!(short.contains("... 2 rays told"), "{short}");
+    let beyond = ["explain", "cube.obj", "--size", "33x33", "--pixel", "33,0"];
+    place.refuse(&beyond, 2, &["--pixel 33,0 is not in the picture, whose pixels are 0,0 to 32,32"]);
+    place.refuse(&["explain", "cube.obj", "--pixel", "5"], 2, &["expected a column and a row"]);
+}
+
+/// Walls that are flush, and walls that are not quite.
+#[test]
+fn inspect_says_how_near_solids_are() {
+    let place = Workplace::new();
+    let cuboid = |name: &str, low: f64, high: f64| {
+        format!(
+            "[[object]]\nname = \"{name}\"\nshape = \"box\"\nmin = [{low}, 0, 0]\nmax = [{high}, 1, 1]\n\
+             material = {{ type = \"dielectric\", ior = 1.5 }}\n"
+        )
+    };
+    let camera = "[camera]\ntype = \"pinhole\"\nposition = [0.5, 0.5, 0.5]\ntarget = [0, 0, 0]\nfov = 40\n";
+    place.write("flush.toml", format!("{camera}{}{}", cuboid("a", 0.0, 1.0), cuboid("b", 1.0, 2.0)));
+    let flush = place.succeed(&["inspect", "flush.toml"]).stdout;
+    for phrase in ["inside `a`", "1 pair of solids may overlap", "`a` and `b`, flush on 16.7 % of the first"]
+    {
+        assert!(flush.contains(phrase), "{phrase}: {flush}");
+    }
+}

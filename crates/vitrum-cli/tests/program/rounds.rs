@@ -121,3 +121,27 @@ fn channels_are_for_exr() {
     let one = ["render", "scene.toml", "--spp", "1", "-o", "a.exr", "--channels", "error"];
     place.refuse(&one, 2, &["found 1 samples per pixel; a standard error takes at least 9"]);
 }
+
+/// What is seen beside light, of the ball before the sky: in its middle and in a corner.
+#[test]
+fn channels_say_what_is_seen() {
+    let place = Workplace::with_scene();
+    let asked = "object,object,material,depth,normal,albedo,normal-behind,albedo-behind,media,unmatched";
+    place.succeed(&["render", "scene.toml", "-o", "seen.exr", "--channels", asked]);
+    let all = exr::prelude::read_all_flat_layers_from_file(place.path("seen.exr")).expect("readable");
+    let channels = &all.layer_data[0].channel_data.list;
+    let names: Vec<String> = channels.iter().map(|c| c.name.to_string()).collect();
+    assert_eq!(names.len(), 3 + 5 + 4 * 3, "each once: {names:?}");
+    let at = |name: &str, place: usize| {
+        let channel = channels.iter().find(|c| c.name.to_string() == name).expect(name);
+        channel.sample_data.values_as_f32().nth(place).expect("a pixel")
+    };
+    let (corner, middle) = (0, 6 * 16 + 8);
+    for (name, in_corner, in_middle) in
+        [("object.id", 0.0, 1.0), ("media.Y", 0.0, 1.0), ("unmatched.Y", 0.0, 0.0)]
+    {
+        assert_eq!((at(name, corner), at(name, middle)), (in_corner, in_middle), "{name}");
+    }
+    assert!(at("depth.Z", corner).is_infinite() && (at("depth.Z", middle) - 4.0).abs() < 0.1);
+    assert!(at("normal.Z", middle) > 0.95 && at("behind.albedo.R", middle) == 1.0);
+}
