@@ -33,7 +33,7 @@ pub struct Stats {
     pub merged: u64,
     /// Surfaces of solids near the origin of a ray that were ignored, because the ray has crossed them already.
     pub contradictions: u64,
-    /// Solids that were left without having been entered.
+    /// Solids that were left without having been entered, and rays that escaped out of one without having left it.
     pub unmatched_exits: u64,
     /// Solids that were not counted, because a ray was in eight others.
     pub overfull: u64,
